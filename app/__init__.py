@@ -1,0 +1,1 @@
+"""Files, sessions, pictures, the command line and the window."""

@@ -1,0 +1,144 @@
+"""``mesh.curvelight`` on every `pyvista.PolyData`, found by PyVista through its entry point."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyvista
+
+from app import export
+from app.session import FIGURE_LIGHTS
+from lutcore.color import auto_exposure
+from lutcore.lights import DirectionalLight, Light
+from lutcore.materials import Material
+from lutcore.mesh import TriangleMesh
+
+
+@pyvista.register_dataset_accessor("curvelight", pyvista.PolyData)
+class CurvelightAccessor:
+    """Curvature and translucent shading of a PyVista surface.
+
+    Parameters
+    ----------
+    data : pyvista.PolyData
+        The surface. Polygons are triangulated for computing; points keep their order.
+
+    Examples
+    --------
+    >>> import pyvista
+    >>> ball = pyvista.Sphere(radius=10.0)
+    >>> curved = ball.curvelight.curvature()
+    >>> bool(abs(curved["mean_curvature"].mean() - 0.1) < 0.002)
+    True
+    """
+
+    def __init__(self, data: pyvista.PolyData) -> None:
+        self._data = data
+
+    def curvature(
+        self, method: str = "auto", scale: float | None = None, **parameters: Any
+    ) -> pyvista.PolyData:
+        """Return a copy of the surface with its curvature as point data.
+
+        Parameters
+        ----------
+        method : str
+            A curvature estimator; see `lutcore.estimators`.
+        scale : float, optional
+            Length to average over, mesh units; chosen by the estimator if not given.
+        **parameters : object
+            Parameters of the estimator.
+
+        Returns
+        -------
+        pyvista.PolyData
+            With k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness and
+            curvature_error, in 1/mesh unit: convex is positive, k1 >= k2.
+
+        Raises
+        ------
+        lutcore.MeshError
+            If there is no surface.
+        lutcore.ParameterError
+            If a name or a value is not accepted.
+        """
+        from lutcore.estimation import principal_curvatures
+
+        curvatures = principal_curvatures(self._mesh(), method, scale, **parameters)
+        return self._with(export.curvature_arrays(curvatures))
+
+    def shade(
+        self,
+        material: Material | str = "skin1",
+        lights: Sequence[Light] | None = None,
+        model: str = "curvature-lut",
+        mm_per_unit: float = 1.0,
+        *,
+        method: str = "auto",
+        scale: float | None = None,
+        exposure: float | None = None,
+        **parameters: Any,
+    ) -> pyvista.PolyData:
+        """Return a copy of the surface shaded as a translucent material.
+
+        Parameters
+        ----------
+        material : Material or str
+            A material, or the name of one; see `lutcore.materials`.
+        lights : sequence of lights, optional
+            Those of the paper's Figure 1 if not given: strong from the right (+x), weak from the
+            left, for a mesh that faces +z.
+        model : str
+            A shading model; see `lutcore.shading_models`.
+        mm_per_unit : float
+            Size of a mesh unit, mm.
+        method : str
+            A curvature estimator.
+        scale : float, optional
+            Length that curvature is averaged over, mesh units; if not given, `auto` takes the
+            least that hides the mesh's noise and that the material's light sees.
+        exposure : float, optional
+            Factor before encoding; brings the brightest parts near white if not given.
+        **parameters : object
+            Parameters of the shading model.
+
+        Returns
+        -------
+        pyvista.PolyData
+            With shading (float32, linear radiant exitance) and shading_srgb (uint8): draw it with
+            ``plot(scalars="shading_srgb", rgb=True, lighting=False)``.
+
+        Raises
+        ------
+        lutcore.MeshError
+            If there is no surface.
+        lutcore.ParameterError
+            If a name or a value is not accepted.
+        """
+        from lutcore.baking import bake
+        from lutcore.estimation import principal_curvatures
+        from lutcore.scale import shading_scale
+        from lutcore.shading import shade
+
+        mesh = self._mesh()
+        if scale is None and method == "auto":
+            scale = shading_scale(mesh, bake(material).glow / mm_per_unit)
+        curvatures = principal_curvatures(mesh, method, scale)
+        chosen = _default_lights() if lights is None else lights
+        exitance = shade(mesh, curvatures, material, chosen, model, mm_per_unit, **parameters)
+        factor = auto_exposure(exitance) if exposure is None else exposure
+        return self._with(export.shading_arrays(exitance, factor))
+
+    def _mesh(self) -> TriangleMesh:
+        triangles = self._data if self._data.is_all_triangles else self._data.triangulate()
+        faces = triangles.regular_faces if triangles.n_cells else np.empty((0, 3), dtype=int)
+        return TriangleMesh(triangles.points, faces)
+
+    def _with(self, arrays: export.Arrays) -> pyvista.PolyData:
+        result = self._data.copy()
+        result.point_data.update(arrays)
+        return result
+
+
+def _default_lights() -> list[Light]:
+    return [DirectionalLight(light.direction, light.irradiance) for light in FIGURE_LIGHTS]

@@ -1,0 +1,306 @@
+"""Flags that commands share, and the session they add up to."""
+
+import argparse
+from pathlib import Path
+from typing import Any, get_args
+
+from msgspec.structs import replace
+
+from app import session as state
+from app.session import Cone, Directional, Method, Point, Quantity, Session, Vector
+from lutcore.errors import ParameterError
+from lutcore.parameters import Choice, declared
+from lutcore.registry import Registry
+
+
+def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> None:
+    """Add the MESH argument, the output and the session file.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    optional : bool
+        Whether the command has a mesh of its own.
+    """
+    parser.add_argument(
+        "mesh",
+        nargs="?" if optional else None,
+        metavar="MESH",
+        help="PLY, OBJ, STL, OFF, GLB or VTP file, or sample:NAME",
+    )
+    parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
+    parser.add_argument("--session", type=Path, metavar="FILE", help="start from a session file")
+    parser.add_argument("--save-session", type=Path, metavar="FILE", help="write the session too")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def add_picture(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of a picture's frame.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    """
+    group = parser.add_argument_group("picture")
+    group.add_argument("--size", type=_size, metavar="WxH", help="pixels, such as 1600x1000")
+    group.add_argument(
+        "--camera",
+        metavar="VIEW",
+        help="auto, front, back, left, right, top, bottom, oblique, or 9 numbers with commas: "
+        "position, target, up; a 10th is the angle of view in degrees",
+    )
+    group.add_argument("--background", metavar="COLOR", help="name or #rrggbb")
+
+
+def add_colors(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of a colour map.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    """
+    group = parser.add_argument_group("colours")
+    group.add_argument("--quantity", choices=get_args(Quantity), help="what is shown")
+    group.add_argument("--colormap", metavar="NAME", help="green-red, or any of matplotlib's")
+    group.add_argument("--range", type=_pair, metavar="LOW,HIGH", help="ends of the colour bar")
+    group.add_argument("--flat", action="store_const", const=True, help="colours without light")
+
+
+def add_curvature(parser: argparse.ArgumentParser, words: list[str]) -> None:
+    """Add the flags of the curvature estimator, its own parameters included.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    words : list of str
+        The command's arguments: they say which estimator.
+    """
+    from lutcore.estimation import estimator_registry
+
+    group = parser.add_argument_group("curvature")
+    group.add_argument("--method", metavar="NAME", help="estimator; see curvelight models")
+    group.add_argument("--scale", metavar="auto|LENGTH", help="averaging length, mesh units")
+    group.add_argument("--mm-per-unit", type=float, metavar="N", help="size of a mesh unit")
+    _add_parameters(parser, estimator_registry, _chosen(words, "--method", "estimator"))
+
+
+def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: bool = True) -> None:
+    """Add the flags of shading, the model's own parameters included.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    words : list of str
+        The command's arguments: they say which model.
+    with_model : bool
+        Whether the command takes one model.
+    """
+    group = parser.add_argument_group("shading")
+    if with_model:
+        from lutcore.shading import model_registry
+
+        group.add_argument("--model", metavar="NAME", help="shading model; see curvelight models")
+        _add_parameters(parser, model_registry, _chosen(words, "--model", "model"))
+    group.add_argument("--material", metavar="NAME", help="see curvelight materials")
+    lights = {
+        "--light": (_directional, "X,Y,Z[,E]", "directional light TO x,y,z"),
+        "--camera-light": (_camera_directional, "X,Y,Z[,E]", "the same in the camera's axes"),
+        "--point-light": (_point, "X,Y,Z[,I]", "point light at x,y,z"),
+        "--cone-light": (_cone, "X,Y,Z,DX,DY,DZ,ANGLE[,I]", "cone light, half angle in degrees"),
+    }
+    for flag, (kind, metavar, doc) in lights.items():
+        group.add_argument(
+            flag,
+            type=kind,
+            action="append",
+            dest="lights",
+            metavar=metavar,
+            help=f"{doc}; strength as one number or R,G,B; may be repeated",
+        )
+    group.add_argument("--exposure", type=float, metavar="X", help="factor before encoding")
+    group.add_argument(
+        "--no-albedo",
+        action="store_const",
+        const=False,
+        dest="albedo",
+        help="ignore the file's vertex colours",
+    )
+
+
+def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
+    """Return the session that the arguments describe.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of a command that used the functions above.
+    **fixed : object
+        Fields that the command decides.
+
+    Returns
+    -------
+    Session
+        Defaults, then the session file, then the flags.
+
+    Raises
+    ------
+    SessionError, ParameterError
+        If a file or a value is not right.
+    """
+    given = vars(arguments)
+    start = state.read(given["session"]) if given.get("session") else Session()
+    changes = {name: given.get(name) for name in _PLAIN} | fixed
+    if given.get("camera"):
+        from app.camera import parse
+
+        changes["camera"] = parse(given["camera"])
+    if given.get("lights"):
+        changes["lights"] = tuple(given["lights"])
+    if given.get("scale"):
+        start = _with_scale(start, given["scale"])
+    changes["estimator"] = _method(start.estimator, given, "curvature estimator", "method")
+    changes["model"] = _method(start.model, given, "shading model", "model")
+    session = state.replaced(start, **changes)
+    if given.get("save_session"):
+        state.write(session, given["save_session"])
+    return session
+
+
+_PLAIN = (
+    "mesh",
+    "mm_per_unit",
+    "material",
+    "exposure",
+    "albedo",
+    "quantity",
+    "colormap",
+    "range",
+    "flat",
+    "size",
+    "background",
+)
+
+
+def _chosen(words: list[str], flag: str, field: str) -> str:
+    """Name of the plug-in that the arguments choose: its parameters become flags."""
+    scout = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    scout.add_argument(flag, dest="name")
+    scout.add_argument("--session", type=Path)
+    known, _ = scout.parse_known_args(words)
+    if known.name:
+        return str(known.name)
+    start = state.read(known.session) if known.session else Session()
+    method: Method = getattr(start, field)
+    return method.name
+
+
+def _add_parameters(parser: argparse.ArgumentParser, registry: Registry[Any], name: str) -> None:
+    plugin = registry.get(name)
+    specs = declared(plugin)
+    if not specs:
+        return
+    group = parser.add_argument_group(f"parameters of {registry.kind} {name}")
+    for parameter, spec in specs.items():
+        dashed = parameter.replace("_", "-")
+        default = plugin.__dataclass_fields__[parameter].default
+        if isinstance(spec, Choice):
+            doc, metavar = f"{spec.doc} ({default})", "|".join(spec.options)
+        else:
+            unit = f" {spec.unit}" if spec.unit else ""
+            doc, metavar = f"{spec.doc} {spec.low:g} to {spec.high:g}{unit} ({default})", "N"
+        group.add_argument(
+            f"--{dashed}",
+            dest=f"{registry.kind}:{parameter}",
+            metavar=metavar,
+            help=doc.replace("%", "%%"),
+        )
+
+
+def _method(start: Method, given: dict[str, Any], kind: str, flag: str) -> Method:
+    name = given.get(flag) or start.name
+    kept = dict(start.parameters) if name == start.name else {}
+    prefix = f"{kind}:"
+    for key, value in given.items():
+        if key.startswith(prefix) and value is not None:
+            kept[key.removeprefix(prefix)] = _number(value)
+    return Method(name, kept)
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _floats(text: str, *counts: int) -> list[float]:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not numbers with commas") from None
+    if len(numbers) not in counts:
+        wanted = " or ".join(map(str, counts))
+        raise argparse.ArgumentTypeError(f"{text!r} has {len(numbers)} numbers, expected {wanted}")
+    return numbers
+
+
+def _strength(numbers: list[float]) -> Vector:
+    """One number for white, three for RGB, none for 1."""
+    if not numbers:
+        return 1.0, 1.0, 1.0
+    red, green, blue = numbers * 3 if len(numbers) == 1 else numbers
+    return red, green, blue
+
+
+def _vector(numbers: list[float]) -> Vector:
+    x, y, z = numbers
+    return x, y, z
+
+
+def _directional(text: str) -> Directional:
+    numbers = _floats(text, 3, 4, 6)
+    return Directional(_vector(numbers[:3]), _strength(numbers[3:]), "world")
+
+
+def _camera_directional(text: str) -> Directional:
+    numbers = _floats(text, 3, 4, 6)
+    return Directional(_vector(numbers[:3]), _strength(numbers[3:]), "camera")
+
+
+def _point(text: str) -> Point:
+    numbers = _floats(text, 3, 4, 6)
+    return Point(_vector(numbers[:3]), _strength(numbers[3:]))
+
+
+def _cone(text: str) -> Cone:
+    numbers = _floats(text, 7, 8, 10)
+    return Cone(_vector(numbers[:3]), _vector(numbers[3:6]), _strength(numbers[7:]), numbers[6])
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, cross, height = text.lower().partition("x")
+    if not (cross and width.isdigit() and height.isdigit()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT in pixels")
+    return int(width), int(height)
+
+
+def _pair(text: str) -> tuple[float, float]:
+    low, high = _floats(text, 2)
+    if not low < high:
+        raise argparse.ArgumentTypeError(f"{text!r}: the first must be below the second")
+    return low, high
+
+
+def _with_scale(start: Session, text: str) -> Session:
+    # "auto" must also undo a session file's scale, which `replaced` would take for "unchanged".
+    if text == "auto":
+        return replace(start, scale=None)
+    try:
+        return state.replaced(start, scale=float(text))
+    except ValueError:
+        raise ParameterError(f"scale = {text!r} is neither auto nor a length") from None

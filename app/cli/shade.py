@@ -1,0 +1,67 @@
+"""Shade a mesh as a translucent material and write a picture, or the values at its vertices.
+
+.png is a picture; .vtp, .ply and .npz hold `shading` (float32, linear radiant exitance) and
+`shading_srgb` (uint8, what a display is sent).
+"""
+
+import argparse
+
+from app.cli import options
+from app.cli.console import answer
+from app.cli.work import Run, percentiles
+
+
+def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
+    """Declare the command's flags.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    words : list of str
+        The command's arguments.
+    """
+    options.add_mesh(parser)
+    options.add_shading(parser, words)
+    options.add_curvature(parser, words)
+    options.add_picture(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of the command.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from app import export
+    from lutcore.color import auto_exposure
+
+    work = Run(arguments, options.session_from(arguments, view="shade"))
+    work.require(".png", ".vtp", ".ply", ".npz")
+    warnings = work.warn()
+    exitance = work.exitance()
+    exposure = work.session.exposure
+    if work.output.suffix.lower() == ".png":
+        exposure = work.draw().exposure
+    else:
+        exposure = exposure or auto_exposure(exitance)
+        mesh = work.pipeline.subject(work.session).mesh
+        export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
+    result = work.summary(warnings) | {
+        "material": work.pipeline.material(work.session).name,
+        "model": work.session.model.name,
+        "exposure": exposure,
+        "exitance": {
+            name: percentiles(exitance[:, channel])
+            for channel, name in enumerate(("red", "green", "blue"))
+        },
+    }
+    answer(arguments, result, f"wrote {arguments.output}")
+    return 0

@@ -1,0 +1,33 @@
+"""Draws one empty picture and prints what drew it; run as a child process by `doctor`."""
+
+import json
+
+from app import gl
+
+
+def main() -> None:
+    """Print one line of JSON: renderer, vendor, version, window, software."""
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+    with gl.offscreen():
+        window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(32, 32)
+    window.AddRenderer(vtkRenderer())
+    window.Render()
+    found = {}
+    for line in window.ReportCapabilities().splitlines():
+        key, _, value = line.partition(":")
+        for wanted in ("renderer", "vendor", "version"):
+            if key.strip() == f"OpenGL {wanted} string":
+                found[wanted] = value.strip()
+    found["window"] = window.GetClassName()
+    software = any(word in found["renderer"].lower() for word in ("llvmpipe", "softpipe", "swr"))
+    found["software"] = "yes" if software else "no"
+    window.Finalize()
+    print(json.dumps(found))  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,285 @@
+"""From a session to per-vertex arrays, each computed once and kept."""
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar, cast
+
+import msgspec
+
+from app.loading import LoadedMesh, load_mesh
+from app.samples import PREFIX, Sample, sample
+from app.session import Cone, Directional, Method, Point, Session, Substance
+from lutcore.arrays import FloatArray
+from lutcore.curvature import PrincipalCurvatures
+from lutcore.lights import Light
+from lutcore.materials import Material, material
+from lutcore.mesh import TriangleMesh
+from lutcore.progress import Progress, silent
+
+T = TypeVar("T")
+_KEPT = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """The mesh of a session with what is known of it beside its geometry.
+
+    Parameters
+    ----------
+    loaded : LoadedMesh
+        The mesh, its colours, its warnings.
+    sample : Sample or None
+        The sample it came from.
+    """
+
+    loaded: LoadedMesh
+    sample: Sample | None
+
+    @property
+    def mesh(self) -> TriangleMesh:
+        """The triangle mesh, vertex count and order as in the file."""
+        return self.loaded.mesh
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user must know of the file."""
+        remark = self.sample.remark if self.sample else ""
+        return (*self.loaded.warnings, *([remark] if remark else []))
+
+
+class Pipeline:
+    """Computes what sessions ask for, and keeps the last few results of each step.
+
+    Parameters
+    ----------
+    progress : callable
+        Told where long work stands; see `lutcore.progress`.
+    """
+
+    def __init__(self, progress: Progress = silent) -> None:
+        self.progress = progress
+        self._kept: OrderedDict[Hashable, object] = OrderedDict()
+
+    def subject(self, session: Session) -> Subject:
+        """Return the session's mesh.
+
+        Parameters
+        ----------
+        session : Session
+            Its `mesh` is used.
+
+        Returns
+        -------
+        Subject
+            The loaded mesh.
+
+        Raises
+        ------
+        MeshError
+            If it cannot be read or holds no surface.
+        ParameterError
+            If it names a sample that does not exist.
+        """
+        found = sample(session.mesh) if session.mesh.startswith(PREFIX) else None
+        path = found.path if found else Path(session.mesh)
+        stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
+        return self._once(("subject", str(path), stamp), lambda: Subject(load_mesh(path), found))
+
+    def mm_per_unit(self, session: Session) -> float:
+        """Return the size of a mesh unit.
+
+        Parameters
+        ----------
+        session : Session
+            Says it, or leaves it to the sample; else it is 1.
+
+        Returns
+        -------
+        float
+            Millimetres.
+        """
+        if session.mm_per_unit is not None:
+            return session.mm_per_unit
+        found = self.subject(session).sample
+        return found.mm_per_unit if found else 1.0
+
+    def curvatures(self, session: Session) -> PrincipalCurvatures:
+        """Return the curvature that the session shows or shades with.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, estimator and scale are used; see `scale` for a scale that is left open.
+
+        Returns
+        -------
+        PrincipalCurvatures
+            In 1/mesh unit.
+        """
+        from lutcore.estimation import principal_curvatures
+
+        mesh = self.subject(session).mesh
+        method = session.estimator
+        scale = self.scale(session)
+        return self._once(
+            ("curvatures", *self._curvature_key(session)),
+            lambda: principal_curvatures(
+                mesh, method=method.name, scale=scale, progress=self.progress, **method.parameters
+            ),
+        )
+
+    def scale(self, session: Session) -> float | None:
+        """Return the length that curvature is averaged over.
+
+        Where a session shades and leaves the scale to `auto`, it follows from the mesh's spacing
+        and the material's glow; where it only measures, `auto` finds the most accurate one.
+
+        Parameters
+        ----------
+        session : Session
+            Its scale, estimator and view are used, and its mesh and material where it shades.
+
+        Returns
+        -------
+        float or None
+            Mesh units; None leaves it to the estimator.
+        """
+        if session.scale is not None or session.estimator.name != "auto":
+            return session.scale
+        if session.view == "curvature":
+            return None
+        from lutcore.scale import shading_scale
+
+        subject = self.subject(session)
+        glow = self.glow(session)
+        return self._once(
+            ("scale", subject.loaded.digest, glow), lambda: shading_scale(subject.mesh, glow)
+        )
+
+    def glow(self, session: Session) -> float:
+        """Return how far light carries the edge of a shadow, in the channel where it is most.
+
+        Parameters
+        ----------
+        session : Session
+            Its material and scale are used.
+
+        Returns
+        -------
+        float
+            Largest l_u psi(0), mesh units.
+        """
+        from lutcore.baking import bake
+
+        return bake(self.material(session)).glow / self.mm_per_unit(session)
+
+    def material(self, session: Session) -> Material:
+        """Return the session's material.
+
+        Parameters
+        ----------
+        session : Session
+            Its `material` is used.
+
+        Returns
+        -------
+        Material
+            By name or by coefficients.
+
+        Raises
+        ------
+        ParameterError
+            If the name does not exist, or a coefficient is out of range.
+        """
+        chosen = session.material
+        if isinstance(chosen, Substance):
+            return Material(chosen.name, chosen.scattering, chosen.absorption, chosen.eta)
+        return material(chosen)
+
+    def exitance(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
+        """Return the radiant exitance under a shading model.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its own model is used.
+        model : Method
+            The shading model.
+        axes : ndarray, shape=(3, 3)
+            The camera's axes, for lights that move with it.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            Linear RGB; see `lutcore.shade`.
+        """
+        from lutcore.shading import shade
+
+        curvatures = self.curvatures(session)
+        subject = self.subject(session)
+        lights = world_lights(session, axes)
+        key = (
+            "exitance",
+            *self._curvature_key(session),
+            _key((session.material, session.lights, model, self.mm_per_unit(session))),
+            axes.tobytes(),
+        )
+        return self._once(
+            key,
+            lambda: shade(
+                subject.mesh,
+                curvatures,
+                self.material(session),
+                lights,
+                model=model.name,
+                mm_per_unit=self.mm_per_unit(session),
+                **model.parameters,
+            ),
+        )
+
+    def _curvature_key(self, session: Session) -> tuple[Hashable, ...]:
+        digest = self.subject(session).loaded.digest
+        return digest, _key((session.estimator, self.scale(session)))
+
+    def _once(self, key: Hashable, compute: Callable[[], T]) -> T:
+        if key not in self._kept:
+            self._kept[key] = compute()
+            while len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return cast(T, self._kept[key])
+
+
+def world_lights(session: Session, axes: FloatArray) -> list[Light]:
+    """Return the session's lights in world coordinates.
+
+    Parameters
+    ----------
+    session : Session
+        Its lights are used.
+    axes : ndarray, shape=(3, 3)
+        The camera's axes, for lights that move with it.
+
+    Returns
+    -------
+    list of DirectionalLight, PointLight and ConeLight
+        As `lutcore.shade` takes them.
+    """
+    from lutcore.lights import ConeLight, DirectionalLight, PointLight
+
+    lights: list[Light] = []
+    for light in session.lights:
+        if isinstance(light, Directional):
+            direction = axes.T @ light.direction if light.frame == "camera" else light.direction
+            lights.append(DirectionalLight(direction, light.irradiance))
+        elif isinstance(light, Point):
+            lights.append(PointLight(light.position, light.intensity))
+        elif isinstance(light, Cone):
+            lights.append(ConeLight(light.position, light.direction, light.intensity, light.angle))
+    return lights
+
+
+def _key(part: object) -> bytes:
+    return msgspec.json.encode(part, order="sorted")

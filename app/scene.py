@@ -1,0 +1,255 @@
+"""What is drawn: meshes with their colours, a colour bar, captions. The only place that knows how.
+
+It fills plain VTK renderers, so that a window and a picture off the screen draw the same scene.
+The raw VTK classes are used because importing them takes a third of the time of pyvista.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkLight,
+    vtkPolyDataMapper,
+    vtkRenderer,
+    vtkTextActor,
+    vtkTextProperty,
+)
+
+from app.session import Camera
+from lutcore.arrays import FloatArray
+from lutcore.mesh import TriangleMesh
+
+_FONT_SHARE = 0.021
+
+
+@dataclass(frozen=True, eq=False)
+class ColorScale:
+    """How scalars become colours.
+
+    Parameters
+    ----------
+    colors : ndarray, shape=(ENTRIES, 3)
+        See `app.colormaps.table`.
+    low, high : float
+        Values of the first and the last colour.
+    title : str
+        Quantity and unit, above the bar.
+    """
+
+    colors: FloatArray
+    low: float
+    high: float
+    title: str
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A mesh with a colour at each vertex.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The geometry.
+    normals : ndarray, shape=(n, 3)
+        Used only where `lit`.
+    rgb : ndarray of uint8, shape=(n, 3), optional
+        Colours as they go to the display.
+    values : ndarray, shape=(n,), optional
+        Scalars, shown through `scale`.
+    scale : ColorScale, optional
+        How `values` become colours.
+    lit : bool
+        Whether a soft light at the camera shows the shape; else colours are shown as they are.
+    caption : str
+        One line below the surface.
+    """
+
+    mesh: TriangleMesh
+    normals: FloatArray
+    rgb: NDArray[np.uint8] | None = None
+    values: FloatArray | None = None
+    scale: ColorScale | None = None
+    lit: bool = False
+    caption: str = ""
+
+
+def color(text: str) -> tuple[float, float, float]:
+    """Return the colour that a name or #rrggbb stands for.
+
+    Parameters
+    ----------
+    text : str
+        A CSS colour name or hexadecimal notation.
+
+    Returns
+    -------
+    tuple of 3 floats
+        sRGB-encoded, 0 to 1.
+
+    Raises
+    ------
+    ParameterError
+        If it is neither.
+    """
+    from PIL import ImageColor
+
+    from lutcore.errors import ParameterError
+
+    try:
+        red, green, blue = ImageColor.getrgb(text)[:3]
+    except ValueError:
+        raise ParameterError(
+            f"background = {text!r} is not a colour; give a name or #rrggbb"
+        ) from None
+    return red / 255.0, green / 255.0, blue / 255.0
+
+
+def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera, height: int) -> None:
+    """Put a surface into a renderer, seen by a camera.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        An empty renderer.
+    surface : Surface
+        What to draw.
+    camera : Camera
+        Where from.
+    height : int
+        Height of the picture in pixels, for the caption.
+    """
+    # The GPU gets single precision: centring first keeps a mesh far from the origin exact.
+    origin = 0.5 * (surface.mesh.vertices.min(axis=0) + surface.mesh.vertices.max(axis=0))
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(_poly_data(surface, origin))
+    if surface.scale is not None:
+        mapper.SetLookupTable(_lookup(surface.scale))
+        mapper.UseLookupTableScalarRangeOn()
+        # Colours of the values between vertices, not mixtures of the vertices' colours.
+        mapper.InterpolateScalarsBeforeMappingOn()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    if surface.lit:
+        _light(renderer, actor)
+    else:
+        actor.GetProperty().LightingOff()
+    renderer.AddActor(actor)
+    _aim(renderer, camera, origin)
+    if surface.caption:
+        text = _text(surface.caption, renderer, height)
+        text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+        text.SetPosition(0.5, 0.015)
+        text.GetTextProperty().SetJustificationToCentered()
+        renderer.AddViewProp(text)
+
+
+def fill_bar(renderer: vtkRenderer, scale: ColorScale, height: int) -> None:
+    """Put a colour bar with its numbers and its title into a renderer.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        An empty renderer.
+    scale : ColorScale
+        What to explain.
+    height : int
+        Height of the picture in pixels, for the text.
+    """
+    bar = vtkScalarBarActor()
+    bar.SetLookupTable(_lookup(scale))
+    bar.SetMaximumNumberOfColors(256)
+    bar.SetNumberOfLabels(6)
+    bar.SetLabelFormat("{:.3g}" if _new_label_format() else "%.3g")
+    bar.UnconstrainedFontSizeOn()
+    for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
+        _style(style, renderer, height)
+    bar.SetBarRatio(0.22)
+    bar.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    bar.SetPosition(0.12, 0.12)
+    bar.SetWidth(0.8)
+    bar.SetHeight(0.72)
+    renderer.AddViewProp(bar)
+    title = _text(scale.title, renderer, height)
+    title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    title.SetPosition(0.5, 0.87)
+    title.GetTextProperty().SetJustificationToCentered()
+    renderer.AddViewProp(title)
+
+
+def _new_label_format() -> bool:
+    # VTK 9.6 turned label formats from printf to std::format notation.
+    from vtkmodules.vtkCommonCore import vtkVersion
+
+    return (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 6)
+
+
+def _poly_data(surface: Surface, origin: FloatArray) -> vtkPolyData:
+    mesh = surface.mesh
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk((mesh.vertices - origin).astype(np.float32), deep=True))
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=True))
+    data = vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    shown = surface.rgb if surface.rgb is not None else surface.values
+    if shown is not None:
+        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=True))
+    if surface.lit:
+        normals = numpy_to_vtk(surface.normals.astype(np.float32), deep=True)
+        data.GetPointData().SetNormals(normals)
+    return data
+
+
+def _lookup(scale: ColorScale) -> vtkLookupTable:
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(len(scale.colors))
+    for index, (red, green, blue) in enumerate(scale.colors):
+        table.SetTableValue(index, red, green, blue, 1.0)
+    table.SetTableRange(scale.low, scale.high)
+    return table
+
+
+def _light(renderer: vtkRenderer, actor: vtkActor) -> None:
+    light = vtkLight()
+    light.SetLightTypeToHeadlight()
+    renderer.AddLight(light)
+    # Half the brightness is independent of the light: the colours must stay readable.
+    actor.GetProperty().SetAmbient(0.5)
+    actor.GetProperty().SetDiffuse(0.5)
+    actor.GetProperty().SetInterpolationToPhong()
+
+
+def _aim(renderer: vtkRenderer, camera: Camera, origin: FloatArray) -> None:
+    view = renderer.GetActiveCamera()
+    view.SetPosition(*(np.asarray(camera.position) - origin))
+    view.SetFocalPoint(*(np.asarray(camera.target) - origin))
+    view.SetViewUp(*camera.up)
+    view.SetViewAngle(camera.angle)
+    if camera.height is not None:
+        view.ParallelProjectionOn()
+        view.SetParallelScale(camera.height / 2.0)
+    renderer.ResetCameraClippingRange()
+
+
+def _text(words: str, renderer: vtkRenderer, height: int) -> vtkTextActor:
+    text = vtkTextActor()
+    text.SetInput(words)
+    _style(text.GetTextProperty(), renderer, height)
+    return text
+
+
+def _style(style: vtkTextProperty, renderer: vtkRenderer, height: int) -> None:
+    dark = sum(renderer.GetBackground()) < 1.5
+    style.SetColor(*((0.86,) * 3 if dark else (0.1,) * 3))
+    style.SetFontSize(max(10, round(_FONT_SHARE * height)))
+    style.SetFontFamilyToArial()
+    style.ItalicOff()
+    style.BoldOff()
+    style.ShadowOff()

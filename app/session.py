@@ -1,0 +1,243 @@
+"""The whole state of a picture as plain data, and its JSON form.
+
+A session says everything that a picture depends on and nothing else: the same session over the
+same mesh gives the same picture, from the window and from the command line.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import Meta, Struct
+
+from app.writing import write_bytes
+from lutcore.errors import CurvelightError, ParameterError
+
+Vector = tuple[float, float, float]
+Positive = Annotated[float, Meta(gt=0.0)]
+NotNegative = Annotated[float, Meta(ge=0.0)]
+Pixels = Annotated[int, Meta(ge=16, le=16384)]
+Frame = Literal["camera", "world"]
+
+
+class SessionError(CurvelightError):
+    """A session file cannot be read, or says what a session cannot say."""
+
+
+class _Part(Struct, frozen=True, forbid_unknown_fields=True):
+    pass
+
+
+class Directional(_Part, frozen=True, tag="directional", tag_field="kind"):
+    """A directional light; see `lutcore.DirectionalLight`.
+
+    `frame` says whether the direction is in world axes or in the camera's: x to the right, y up,
+    z towards the viewer.
+    """
+
+    direction: Vector
+    irradiance: Vector = (1.0, 1.0, 1.0)
+    frame: Frame = "world"
+
+
+class Point(_Part, frozen=True, tag="point", tag_field="kind"):
+    """A point light in world coordinates; see `lutcore.PointLight`."""
+
+    position: Vector
+    intensity: Vector = (1.0, 1.0, 1.0)
+
+
+class Cone(_Part, frozen=True, tag="cone", tag_field="kind"):
+    """A cone light in world coordinates; see `lutcore.ConeLight`."""
+
+    position: Vector
+    direction: Vector
+    intensity: Vector = (1.0, 1.0, 1.0)
+    angle: Annotated[float, Meta(gt=0.0, le=180.0)] = 30.0
+
+
+class Substance(_Part, frozen=True):
+    """A material by its coefficients, for one that has no name; see `lutcore.Material`."""
+
+    name: str
+    scattering: tuple[Positive, Positive, Positive]
+    absorption: tuple[NotNegative, NotNegative, NotNegative]
+    eta: Annotated[float, Meta(ge=1.0, le=3.0)]
+
+
+class Method(_Part, frozen=True):
+    """A plug-in by name, with the parameters that are not at their default."""
+
+    name: str
+    parameters: dict[str, float | str] = {}
+
+
+class Camera(_Part, frozen=True):
+    """Where the picture is taken from, in world coordinates.
+
+    `angle` is the full vertical angle of view in degrees; `height`, where given, makes the
+    projection parallel and is the height of the picture in mesh units.
+    """
+
+    position: Vector
+    target: Vector
+    up: Vector = (0.0, 1.0, 0.0)
+    angle: Annotated[float, Meta(gt=0.0, lt=180.0)] = 30.0
+    height: Positive | None = None
+
+
+View = Literal["shade", "curvature", "figure", "compare"]
+Quantity = Literal["curvedness", "k1", "k2", "mean", "gauss", "shape_index", "error"]
+
+# One strong light from the right and a weak one from the left, as in the paper's Figure 1.
+FIGURE_LIGHTS = (
+    Directional((0.9, 0.3, 0.3), (1.0, 1.0, 1.0), "camera"),
+    Directional((-0.8, -0.1, 0.4), (0.09, 0.09, 0.09), "camera"),
+)
+
+
+class Session(_Part, frozen=True):
+    """Everything that a picture depends on.
+
+    `mesh` is a path or ``sample:NAME``; `mm_per_unit` None takes the sample's own scale, else
+    1 mm; `scale` is the length in mesh units that curvature is averaged over, None chooses it;
+    `camera` is a view name (see `app.camera`) or a camera; `range` None takes robust percentiles;
+    `exposure` None brings the brightest parts near white.
+    """
+
+    mesh: str = "sample:marble-face-raw"
+    mm_per_unit: Positive | None = None
+    view: View = "shade"
+    material: str | Substance = "skin1"
+    lights: tuple[Directional | Point | Cone, ...] = FIGURE_LIGHTS
+    model: Method = Method("curvature-lut")
+    compared: tuple[Method, ...] = ()
+    difference: bool = False
+    estimator: Method = Method("auto")
+    scale: Positive | None = None
+    quantity: Quantity = "curvedness"
+    colormap: str = "green-red"
+    range: tuple[float, float] | None = None
+    flat: bool = False
+    albedo: bool = True
+    exposure: Positive | None = None
+    camera: str | Camera = "auto"
+    size: tuple[Pixels, Pixels] = (1000, 1000)
+    background: str = "#20242a"
+    format: Literal[1] = 1
+
+
+def to_json(session: Session) -> bytes:
+    """Return a session as JSON text.
+
+    Parameters
+    ----------
+    session : Session
+        Any session.
+
+    Returns
+    -------
+    bytes
+        UTF-8, indented, with a line break at its end.
+    """
+    return msgspec.json.format(msgspec.json.encode(session), indent=2) + b"\n"
+
+
+def from_json(text: bytes, label: str = "session") -> Session:
+    """Return the session that JSON text says.
+
+    Parameters
+    ----------
+    text : bytes
+        As `to_json` makes it; what is left out takes its default.
+    label : str
+        What to call it in a message: the file's name.
+
+    Returns
+    -------
+    Session
+        The session, its values checked.
+
+    Raises
+    ------
+    SessionError
+        If it is not JSON, names a field that does not exist or a value that cannot be.
+    """
+    try:
+        return msgspec.json.decode(text, type=Session)
+    except msgspec.MsgspecError as error:
+        raise SessionError(f"{label}: not a Curvelight session: {error}") from None
+
+
+def read(path: Path) -> Session:
+    """Read a session file.
+
+    Parameters
+    ----------
+    path : Path
+        A file that `write` or a person wrote.
+
+    Returns
+    -------
+    Session
+        The session; a relative mesh path is taken from the file's own folder.
+
+    Raises
+    ------
+    SessionError
+        If the file cannot be read or holds no session.
+    """
+    try:
+        session = from_json(path.read_bytes(), str(path))
+    except OSError as error:
+        raise SessionError(f"{path}: cannot be read: {error.strerror}") from None
+    if session.mesh.startswith("sample:") or Path(session.mesh).is_absolute():
+        return session
+    return msgspec.structs.replace(session, mesh=str(path.parent / session.mesh))
+
+
+def write(session: Session, path: Path) -> None:
+    """Write a session file, whole or not at all.
+
+    Parameters
+    ----------
+    session : Session
+        Any session.
+    path : Path
+        Where to.
+
+    Raises
+    ------
+    WriteError
+        If it cannot be written; an older file of that name is then untouched.
+    """
+    write_bytes(path, to_json(session))
+
+
+def replaced(session: Session, **changes: Any) -> Session:
+    """Return a session with some fields changed, checked as a file would be.
+
+    Parameters
+    ----------
+    session : Session
+        Where to start from.
+    **changes : object
+        Fields to change; None leaves a field as it is.
+
+    Returns
+    -------
+    Session
+        The changed session.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be.
+    """
+    given = {name: value for name, value in changes.items() if value is not None}
+    try:
+        return msgspec.convert(
+            msgspec.to_builtins(msgspec.structs.replace(session, **given)), Session
+        )
+    except (msgspec.MsgspecError, ValueError) as error:
+        raise ParameterError(str(error)) from None

@@ -1,0 +1,17 @@
+from .baking import bake as bake
+from .curvature import PrincipalCurvatures as PrincipalCurvatures
+from .errors import CancelledError as CancelledError
+from .errors import CurvelightError as CurvelightError
+from .errors import MeshError as MeshError
+from .errors import ParameterError as ParameterError
+from .estimation import estimators as estimators
+from .estimation import principal_curvatures as principal_curvatures
+from .lights import ConeLight as ConeLight
+from .lights import DirectionalLight as DirectionalLight
+from .lights import PointLight as PointLight
+from .materials import Material as Material
+from .materials import material as material
+from .materials import materials as materials
+from .mesh import TriangleMesh as TriangleMesh
+from .shading import shade as shade
+from .shading import shading_models as shading_models

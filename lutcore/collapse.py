@@ -1,0 +1,97 @@
+"""Shape operators where smoothing has closed the star: corners of a rim and tiny islands."""
+
+import numpy as np
+
+from lutcore.arrays import FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.tensors import tangent_frame
+
+# Passes of the interpolation: reaches that many rings, more than a corner of a rim closes.
+_PASSES = 40
+
+
+@compiled()
+def mend(
+    start: IndexArray,
+    neighbour: IndexArray,
+    normals: FloatArray,
+    closed: IndexArray,
+    tensors: FloatArray,
+    square: FloatArray,
+) -> None:
+    """Replace the tensors of closed stars by interpolation from the open ones around them.
+
+    The interpolation is harmonic: repeated means over the neighbours, the open ones held. An
+    island with no open star is left with the mean of the tensors it came with. Error bars are
+    interpolated likewise and doubled, since nothing was measured there.
+
+    Parameters
+    ----------
+    start, neighbour : ndarray of int32
+        Neighbours of each vertex.
+    normals : ndarray, shape=(n, 3)
+        Unit normals; tensors are in their `tangent_frame`.
+    closed : ndarray of int32, shape=(c,)
+        Vertices whose stars closed.
+    tensors : ndarray, shape=(n, 3)
+        Entries xx, xy, yy; rewritten at `closed`, where they hold a first guess.
+    square : ndarray, shape=(n,)
+        Squared error bars; rewritten likewise.
+    """
+    number = np.full(len(normals), -1, np.int32)
+    for c in range(len(closed)):
+        number[closed[c]] = c
+    now = np.empty((len(closed), 7))
+    for c in range(len(closed)):
+        now[c, :6] = _in_space(normals[closed[c]], tensors[closed[c]])
+        now[c, 6] = square[closed[c]]
+    after = np.empty_like(now)
+    for _ in range(_PASSES):
+        for c in range(len(closed)):
+            first, last = start[closed[c]], start[closed[c] + 1]
+            total = now[c].copy()
+            for at in range(first, last):
+                j = neighbour[at]
+                if number[j] >= 0:
+                    total += now[number[j]]
+                else:
+                    total[:6] += _in_space(normals[j], tensors[j])
+                    total[6] += square[j]
+            after[c] = total / (last - first + 1)
+        now, after = after, now
+    for c in range(len(closed)):
+        i = closed[c]
+        u, v = tangent_frame(normals[i, 0], normals[i, 1], normals[i, 2])
+        tensors[i, 0] = _between(now[c], u, u)
+        tensors[i, 1] = _between(now[c], u, v)
+        tensors[i, 2] = _between(now[c], v, v)
+        square[i] = 4.0 * now[c, 6]
+
+
+@compiled()
+def _in_space(normal: FloatArray, tensor: FloatArray) -> FloatArray:
+    """Return the entries xx, xy, xz, yy, yz, zz of a tangent tensor."""
+    u, v = tangent_frame(normal[0], normal[1], normal[2])
+    out = np.empty(6)
+    at = 0
+    for a in range(3):
+        for b in range(a, 3):
+            out[at] = (
+                tensor[0] * u[a] * u[b]
+                + tensor[1] * (u[a] * v[b] + v[a] * u[b])
+                + tensor[2] * v[a] * v[b]
+            )
+            at += 1
+    return out
+
+
+@compiled()
+def _between(t: FloatArray, p: tuple[float, float, float], q: tuple[float, float, float]) -> float:
+    return (
+        t[0] * p[0] * q[0]
+        + t[1] * (p[0] * q[1] + p[1] * q[0])
+        + t[2] * (p[0] * q[2] + p[2] * q[0])
+        + t[3] * p[1] * q[1]
+        + t[4] * (p[1] * q[2] + p[2] * q[1])
+        + t[5] * p[2] * q[2]
+    )

@@ -1,0 +1,99 @@
+"""Compiled functions, their cache in a place that can be written and never goes stale.
+
+Numba keys a cached function by its own file alone, so a change in a helper of another file would
+leave old machine code in use. The cache folder is therefore named by a digest of every source
+that compiles anything.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from platformdirs import user_cache_path
+
+F = TypeVar("F", bound=Callable[..., Any])
+_STALE_AFTER = 30 * 24 * 3600.0
+
+
+def _digest() -> str:
+    root = Path(__file__).parent.parent
+    hasher = hashlib.sha256(numba.__version__.encode())
+    for package in ("lutcore", "plugins"):
+        for path in sorted((root / package).rglob("*.py")):
+            source = path.read_bytes()
+            if b"lutcore.compiled" in source:
+                hasher.update(source)
+    return hasher.hexdigest()[:16]
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def _remove_stale(folder: Path) -> None:
+    for old in folder.parent.iterdir():
+        if old != folder and time.time() - old.stat().st_mtime > _STALE_AFTER:
+            shutil.rmtree(old, ignore_errors=True)
+
+
+def cache_folder() -> Path:
+    """Return the folder for compiled code, made if it is missing.
+
+    Returns
+    -------
+    Path
+        Inside ``CURVELIGHT_CACHE_DIR`` or the user's cache folder where that can be written,
+        else inside the folder for temporary files.
+    """
+    chosen = os.environ.get("CURVELIGHT_CACHE_DIR")
+    base = Path(chosen) if chosen else user_cache_path("curvelight")
+    folder = base / "compiled" / _digest()
+    if not folder.is_dir() and _writable(folder):
+        _remove_stale(folder)
+    if not _writable(folder):
+        user = os.getuid() if hasattr(os, "getuid") else 0
+        folder = Path(tempfile.gettempdir()) / f"curvelight-{user}" / "compiled" / _digest()
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+_FOLDER = str(cache_folder())
+
+
+def compiled(*, parallel: bool = False) -> Callable[[F], F]:
+    """Return the decorator that compiles a function to machine code at its first call.
+
+    Parameters
+    ----------
+    parallel : bool
+        Whether `numba.prange` loops run on all cores. Each iteration must write its own elements
+        only, so that results do not depend on the number of threads.
+
+    Returns
+    -------
+    callable
+        The decorator.
+    """
+
+    def decorate(function: F) -> F:
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = _FOLDER
+        try:
+            # error_model="numpy": no branch for division by zero, so that loops vectorise.
+            jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
+            return jit(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return decorate

@@ -1,0 +1,157 @@
+"""Curvature from positions and normals that were smoothed alike.
+
+Positions X and normals N go through one diffusion; then dN = S dX over a star gives the shape
+operator S. That is exact wherever N is affine in X (plane, sphere, cylinder) on any triangulation
+and at any scale, because both sides were averaged with the same weights.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numba import prange
+
+from lutcore.arrays import FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.geometry import area_normals, median_vertex_area, vertex_areas, vertex_corners
+from lutcore.heat import SingleArray, diffusion
+from lutcore.laplacian import Laplacian, laplacian
+from lutcore.mesh import TriangleMesh
+from lutcore.progress import Progress, silent
+from lutcore.tensors import symmetric_fit, tangent_frame
+
+
+@dataclass(frozen=True)
+class Surface:
+    """What the smoothing of one mesh needs, whatever the scales.
+
+    Parameters
+    ----------
+    fields : ndarray, shape=(n, 6)
+        Positions and unit normals.
+    operator : Laplacian
+        What diffuses them.
+    spacing : float
+        Square root of the median vertex area, mesh units.
+    """
+
+    fields: FloatArray
+    operator: Laplacian
+    spacing: float
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """Shape operators of a mesh at several scales, in one tangent frame for each vertex.
+
+    Parameters
+    ----------
+    scales : tuple of float
+        The scales, mesh units; the first is 0, the star as it is.
+    normals : ndarray, shape=(n, 3)
+        Unit normals at the base scale; tensors are in their `tangent_frame`.
+    tensors : ndarray, shape=(n, S, 3)
+        Entries xx, xy, yy of the shape operator, 1/mesh unit.
+    stretch : ndarray, shape=(n, S)
+        How far smoothing left the star open: the ratio of its least extent to that before.
+    """
+
+    scales: tuple[float, ...]
+    normals: FloatArray
+    tensors: FloatArray
+    stretch: FloatArray
+
+
+def surface(mesh: TriangleMesh) -> Surface:
+    """Return what `smooth` needs of a mesh.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Centred, every vertex used by a face with an area.
+
+    Returns
+    -------
+    Surface
+        Its fields and Laplacian.
+    """
+    corners = vertex_corners(mesh)
+    areas = vertex_areas(mesh, corners)
+    typical = median_vertex_area(areas)
+    fields = np.empty((len(mesh.vertices), 6))
+    fields[:, :3] = mesh.vertices
+    fields[:, 3:] = area_normals(mesh, corners)
+    return Surface(fields, laplacian(mesh, corners, areas, typical), float(np.sqrt(typical)))
+
+
+def smooth(
+    on: Surface, scales: Sequence[float], base: int = 0, progress: Progress = silent
+) -> Smoothed:
+    """Return the shape operators at several scales, from one recurrence.
+
+    Parameters
+    ----------
+    on : Surface
+        The mesh.
+    scales : sequence of float
+        Standard deviations of the smoothing, mesh units, positive.
+    base : int
+        Which of them gives the normals.
+    progress : callable
+        Told where the work stands.
+
+    Returns
+    -------
+    Smoothed
+        Tensors of scale 0 and of all scales given.
+    """
+    # Raw noise of k is some 10 (s / spacing)^3 times that of the result: keep a tenth of it.
+    tolerance = 0.01 * min(1.0, on.spacing / max(scales)) ** 3
+    change = diffusion(on.operator, on.fields, scales, tolerance, progress)
+    normals, tensors, stretch = _tensors(
+        on.operator.start, on.operator.neighbour, on.fields, change, base
+    )
+    return Smoothed((0.0, *scales), normals, tensors, stretch)
+
+
+@compiled(parallel=True)
+def _tensors(
+    start: IndexArray, neighbour: IndexArray, fields: FloatArray, change: SingleArray, base: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    count, scales = change.shape[0], change.shape[1]
+    normals = np.empty((count, 3))
+    tensors = np.empty((count, scales + 1, 3))
+    stretch = np.empty((count, scales + 1))
+    for i in prange(count):
+        nx = fields[i, 3] + change[i, base, 3]
+        ny = fields[i, 4] + change[i, base, 4]
+        nz = fields[i, 5] + change[i, base, 5]
+        length = np.sqrt(nx * nx + ny * ny + nz * nz)
+        if length < 0.1:  # smoothed over a closed blob: no side is outside any more
+            nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
+        n = (nx / length, ny / length, nz / length)
+        normals[i, 0], normals[i, 1], normals[i, 2] = n
+        u, v = tangent_frame(n[0], n[1], n[2])
+        open_before = 1.0
+        for scale in range(scales + 1):
+            cxx = cxy = cyy = bxx = bxy = byy = 0.0
+            for at in range(start[i], start[i + 1]):
+                j = neighbour[at]
+                xu = xv = nu = nv = 0.0
+                for axis in range(3):
+                    dx = fields[j, axis] - fields[i, axis]
+                    dn = fields[j, axis + 3] - fields[i, axis + 3]
+                    if scale > 0:
+                        dx += change[j, scale - 1, axis] - change[i, scale - 1, axis]
+                        dn += change[j, scale - 1, axis + 3] - change[i, scale - 1, axis + 3]
+                    xu, xv = xu + dx * u[axis], xv + dx * v[axis]
+                    nu, nv = nu + dn * u[axis], nv + dn * v[axis]
+                cxx, cxy, cyy = cxx + xu * xu, cxy + xu * xv, cyy + xv * xv
+                bxx, bxy, byy = bxx + nu * xu, bxy + 0.5 * (nu * xv + nv * xu), byy + nv * xv
+            least = 0.5 * (cxx + cyy) - np.hypot(0.5 * (cxx - cyy), cxy)
+            if scale == 0:
+                open_before = max(least, 1e-12 * (cxx + cyy))
+            stretch[i, scale] = np.sqrt(max(least, 0.0) / open_before)
+            s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)
+            tensors[i, scale, 0], tensors[i, scale, 1], tensors[i, scale, 2] = s
+    return normals, tensors, stretch

@@ -1,0 +1,112 @@
+"""The call that runs a curvature estimator on any mesh."""
+
+import numpy as np
+
+from lutcore.arrays import finite
+from lutcore.curvature import Estimator, PrincipalCurvatures
+from lutcore.errors import ParameterError
+from lutcore.mesh import TriangleMesh
+from lutcore.parameters import Parameters, create
+from lutcore.progress import Progress, silent, tell
+from lutcore.registry import Registry
+from lutcore.weld import Welded, weld
+
+
+class EstimatorParameters(Parameters, Estimator):
+    """Base of every curvature plug-in: checked parameters and `estimate`."""
+
+
+estimator_registry: Registry[EstimatorParameters] = Registry(
+    "curvature estimator", "plugins.curvature", "curvelight.curvature"
+)
+"""The curvature estimators by name."""
+
+
+def estimators() -> list[str]:
+    """Return the names of the curvature estimators.
+
+    Returns
+    -------
+    list of str
+        Sorted; built-in ones and those that other packages bring.
+    """
+    return estimator_registry.names()
+
+
+def principal_curvatures(
+    mesh: TriangleMesh,
+    method: str = "auto",
+    scale: float | None = None,
+    *,
+    progress: Progress = silent,
+    **parameters: object,
+) -> PrincipalCurvatures:
+    """Estimate the principal curvatures of a mesh, vertex by vertex.
+
+    Coincident vertices count as one and get the same answer; faces without area are ignored.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; its faces' order says which side is outside.
+    method : str
+        Name of an estimator.
+    scale : float or None
+        Length to average over, mesh units; None leaves it to the estimator.
+    progress : callable
+        Told where the work stands; see `lutcore.progress`.
+    **parameters : object
+        Parameters of the estimator.
+
+    Returns
+    -------
+    PrincipalCurvatures
+        As many values as `mesh` has vertices, in its order; all finite but the error. A vertex
+        without faces has k1 = k2 = 0, an infinite error, a zero normal and the x and y axes as
+        directions.
+
+    Raises
+    ------
+    ParameterError
+        If the method, the scale or a parameter is not accepted.
+    CancelledError
+        If `progress` asked to stop.
+    """
+    plugin = create(estimator_registry.get(method), f"curvature estimator {method!r}", parameters)
+    if scale is not None:
+        scale = float(finite("scale", scale, ()))
+        if scale <= 0.0:
+            raise ParameterError(f"scale = {scale!r} is not a positive length")
+    tell(progress, 0.0, "joining vertices")
+    welded = weld(mesh)
+    if welded.mesh is None:
+        return _nothing(len(mesh.vertices))
+    return _spread(welded, plugin.estimate(welded.mesh, scale, progress))
+
+
+def _spread(welded: Welded, found: PrincipalCurvatures) -> PrincipalCurvatures:
+    x_axis, y_axis = np.eye(3)[:2]
+    scale = found.scale
+    return PrincipalCurvatures(
+        k1=welded.spread(found.k1, 0.0),
+        k2=welded.spread(found.k2, 0.0),
+        d1=welded.spread(found.d1, x_axis),
+        d2=welded.spread(found.d2, y_axis),
+        normals=welded.spread(found.normals, 0.0),
+        error=welded.spread(found.error, np.inf),
+        scale=welded.spread(scale, 0.0) if isinstance(scale, np.ndarray) else scale,
+    )
+
+
+def _nothing(count: int) -> PrincipalCurvatures:
+    zero = np.zeros(count)
+    axes = np.eye(3)
+    return PrincipalCurvatures(
+        k1=zero,
+        k2=zero.copy(),
+        d1=np.tile(axes[0], (count, 1)),
+        d2=np.tile(axes[1], (count, 1)),
+        normals=np.zeros((count, 3)),
+        error=np.full(count, np.inf),
+        scale=0.0,
+    )

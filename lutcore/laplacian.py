@@ -1,0 +1,168 @@
+"""The Laplacian that diffuses fields over a mesh, stable on any triangulation."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from lutcore.arrays import FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.geometry import Corners, edge, other_two
+from lutcore.mesh import TriangleMesh
+
+# Cotangent weights are kept in this range: below, obtuse pairs would break the maximum
+# principle; above, slivers would bind their ends rigidly.
+_LEAST_WEIGHT, _LARGEST_WEIGHT = 0.01, 3.0
+# Largest row, times the median area; regular triangles have 3.5. Higher caps follow uneven meshes
+# better, at a cost that grows with their root: on random Delaunay triangles with 10 % noise the
+# error of k is .010 at 5, .006 at 8, .004 at 14.
+_ROW_CAP = 8.0
+
+
+class Laplacian(NamedTuple):
+    """The positive Laplacian L of a mesh, (L f)_i = bound/2 sum_j rate_ij (f_i - f_j).
+
+    Parameters
+    ----------
+    start : ndarray of int32, shape=(n + 1,)
+        Where each vertex's neighbours begin.
+    neighbour : ndarray of int32, shape=(e,)
+        The vertices that share an edge with each vertex.
+    rate : ndarray of float32, shape=(e,)
+        Rate of exchange with each neighbour, non-negative, in units of ``bound / 2``.
+    bound : float
+        No eigenvalue of L is larger, 1/mesh unit squared.
+    """
+
+    start: IndexArray
+    neighbour: IndexArray
+    rate: NDArray[np.float32]
+    bound: float
+
+
+def laplacian(
+    mesh: TriangleMesh, corners: Corners, areas: FloatArray, typical_area: float
+) -> Laplacian:
+    """Return the Laplacian of a mesh with clamped cotangents and capped rows.
+
+    Along the rim of an open mesh it diffuses along the rim alone, so that diffusion does not pull
+    the rim inwards and affine fields on a flat patch stay as they are.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    corners : Corners
+        Its corners by vertex.
+    areas : ndarray, shape=(n,)
+        Its vertex areas.
+    typical_area : float
+        The median of `areas`.
+
+    Returns
+    -------
+    Laplacian
+        Symmetric in the inner product of its masses except for the rows of the rim.
+    """
+    ring, count = _rings(mesh.faces, corners.start, corners.corner)
+    start = np.zeros(len(count) + 1, np.int32)
+    np.cumsum(count, out=start[1:])
+    neighbour, rate = _rates(
+        mesh.vertices,
+        mesh.faces,
+        corners.start,
+        corners.corner,
+        ring,
+        start,
+        areas,
+        _ROW_CAP / typical_area,
+    )
+    return Laplacian(start, neighbour, rate, 2.0 * _ROW_CAP / typical_area)
+
+
+@compiled(parallel=True)
+def _rings(
+    faces: IndexArray, start: IndexArray, corner: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return each vertex's neighbours, once each, from ``ring[2 * start[vertex]]`` on."""
+    vertex_count = len(start) - 1
+    ring = np.empty(2 * len(corner), np.int32)
+    count = np.empty(vertex_count, np.int32)
+    for vertex in prange(vertex_count):
+        base = 2 * start[vertex]
+        found = 0
+        for at in range(start[vertex], start[vertex + 1]):
+            for other in other_two(faces, corner[at]):
+                known = False
+                for slot in range(base, base + found):
+                    if ring[slot] == other:
+                        known = True
+                        break
+                if not known:
+                    ring[base + found] = other
+                    found += 1
+        count[vertex] = found
+    return ring, count
+
+
+@compiled()
+def _cotangent(vertices: FloatArray, apex: int, a: int, b: int) -> float:
+    ux, uy, uz = edge(vertices, apex, a)
+    vx, vy, vz = edge(vertices, apex, b)
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return (ux * vx + uy * vy + uz * vz) / np.sqrt(x * x + y * y + z * z)
+
+
+@compiled(parallel=True)
+def _rates(
+    vertices: FloatArray,
+    faces: IndexArray,
+    corner_start: IndexArray,
+    corner: IndexArray,
+    ring: IndexArray,
+    start: IndexArray,
+    areas: FloatArray,
+    cap: float,
+) -> tuple[IndexArray, NDArray[np.float32]]:
+    neighbour = np.empty(start[-1], np.int32)
+    rate = np.empty(start[-1], np.float32)
+    for vertex in prange(len(vertices)):
+        first, last = start[vertex], start[vertex + 1]
+        weight = np.zeros(last - first)
+        faces_at = np.zeros(last - first, np.int32)
+        shift = 2 * corner_start[vertex] - first
+        for slot in range(first, last):
+            neighbour[slot] = ring[slot + shift]
+        for at in range(corner_start[vertex], corner_start[vertex + 1]):
+            after, before = other_two(faces, corner[at])
+            for slot in range(first, last):
+                if neighbour[slot] == after:
+                    weight[slot - first] += 0.5 * _cotangent(vertices, before, vertex, after)
+                    faces_at[slot - first] += 1
+                elif neighbour[slot] == before:
+                    weight[slot - first] += 0.5 * _cotangent(vertices, after, before, vertex)
+                    faces_at[slot - first] += 1
+        rim = 0
+        for j in range(last - first):
+            rim += faces_at[j] == 1
+        mass = areas[vertex]
+        if rim > 0:
+            # On the rim: the Laplacian of the curve that its rim edges form.
+            mass = 0.0
+            for j in range(last - first):
+                weight[j] = 0.0
+                if faces_at[j] == 1:
+                    x, y, z = edge(vertices, vertex, neighbour[first + j])
+                    length = np.sqrt(x * x + y * y + z * z)
+                    weight[j] = 1.0 / length
+                    mass += 0.5 * length
+        else:
+            for j in range(last - first):
+                weight[j] = min(max(weight[j], _LEAST_WEIGHT), _LARGEST_WEIGHT)
+        total = weight.sum()
+        # Rows above the cap get a larger mass: slower there, stable everywhere.
+        mass = max(mass, total / cap)
+        for j in range(last - first):
+            rate[first + j] = weight[j] / (mass * cap)
+    return neighbour, rate

@@ -1,0 +1,32 @@
+"""How different two pictures' colours are to the eye."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lutcore.arrays import FloatArray
+
+
+def ciede2000(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> FloatArray:
+    """Return the CIEDE2000 colour difference of sRGB bytes, element by element.
+
+    Parameters
+    ----------
+    one, other : ndarray of uint8, shape=(..., 3)
+        sRGB-encoded colours.
+
+    Returns
+    -------
+    ndarray, shape=(...)
+        About 1 is just noticeable side by side.
+
+    References
+    ----------
+    CIE 142:2001; Sharma, Wu and Dalal 2005. Computed by colour-science.
+    """
+    import colour
+
+    lab = [
+        colour.XYZ_to_Lab(colour.sRGB_to_XYZ(image.astype(np.float64) / 255.0))
+        for image in (one, other)
+    ]
+    return np.asarray(colour.delta_E(lab[0], lab[1], method="CIE 2000"), dtype=np.float64)

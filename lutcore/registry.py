@@ -1,0 +1,108 @@
+"""Plug-ins found by name: built-in ones by their file, outside ones by entry point.
+
+A built-in plug-in ``curvature-lut`` is the file ``plugins/shading/curvature_lut.py``; naming it
+imports that file alone, and listing names imports none. lutcore never imports `plugins` itself:
+the package is looked up by name when a plug-in is asked for.
+"""
+
+import importlib
+import pkgutil
+from collections.abc import Callable
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from typing import Generic, TypeVar
+
+from lutcore.errors import ParameterError
+from lutcore.parameters import Parameters
+
+T = TypeVar("T", bound=Parameters)
+
+
+class Registry(Generic[T]):
+    """The plug-ins of one kind.
+
+    Parameters
+    ----------
+    kind : str
+        What they are, in words: ``"shading model"``.
+    package : str
+        Package whose modules are the built-in ones.
+    group : str
+        Entry-point group of the outside ones.
+    """
+
+    def __init__(self, kind: str, package: str, group: str) -> None:
+        self.kind = kind
+        self._package = package
+        self._group = group
+        self._loaded: dict[str, type[T]] = {}
+
+    def register(self, name: str) -> Callable[[type[T]], type[T]]:
+        """Return the class decorator that gives a plug-in its name.
+
+        Parameters
+        ----------
+        name : str
+            The name users type, in kebab case.
+
+        Returns
+        -------
+        callable
+            Registers the class and returns it unchanged.
+        """
+
+        def decorate(plugin: type[T]) -> type[T]:
+            self._loaded[name] = plugin
+            return plugin
+
+        return decorate
+
+    def names(self) -> list[str]:
+        """Return every name, sorted, importing no plug-in.
+
+        Returns
+        -------
+        list of str
+            Built-in names and those of installed entry points.
+        """
+        outside = {entry.name for entry in entry_points(group=self._group)}
+        return sorted(self._built_in() | outside | set(self._loaded))
+
+    def get(self, name: str) -> type[T]:
+        """Return the plug-in of that name.
+
+        Parameters
+        ----------
+        name : str
+            One of `names`.
+
+        Returns
+        -------
+        type
+            The plug-in's class; its fields are its parameters.
+
+        Raises
+        ------
+        ParameterError
+            If there is none, or its file does not register it.
+        """
+        if name not in self._loaded:
+            self._import(name)
+        if name not in self._loaded:
+            raise ParameterError(f"the plug-in found for {self.kind} {name!r} does not register it")
+        return self._loaded[name]
+
+    def _built_in(self) -> set[str]:
+        spec = find_spec(self._package)
+        paths = spec.submodule_search_locations if spec else None
+        found = pkgutil.iter_modules(paths or [])
+        return {module.name.replace("_", "-") for module in found if module.name[0] != "_"}
+
+    def _import(self, name: str) -> None:
+        if name in self._built_in():
+            importlib.import_module(f"{self._package}.{name.replace('-', '_')}")
+            return
+        for entry in entry_points(group=self._group, name=name):
+            entry.load()
+            return
+        raise ParameterError.unknown(self.kind, name, self.names())

@@ -1,0 +1,129 @@
+"""Symmetric 2 x 2 tensors in tangent planes, for compiled loops: solve, rotate, decompose."""
+
+import numpy as np
+
+from lutcore.arrays import FloatArray
+from lutcore.compiled import compiled
+
+Vector = tuple[float, float, float]
+
+
+@compiled()
+def tangent_frame(x: float, y: float, z: float) -> tuple[Vector, Vector]:
+    """Return two unit vectors at right angles to a unit vector, right-handed with it.
+
+    Parameters
+    ----------
+    x, y, z : float
+        The unit vector n.
+
+    Returns
+    -------
+    tuple of tuple of float
+        Vectors u and v with u x v = n.
+
+    References
+    ----------
+    T. Duff et al., Building an orthonormal basis, revisited, JCGT 6 (1), 2017, listing 3.
+    """
+    sign = 1.0 if z >= 0.0 else -1.0
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    return (1.0 + sign * x * x * a, sign * b, -sign * x), (b, sign + y * y * a, -y)
+
+
+@compiled()
+def symmetric_fit(
+    cxx: float, cxy: float, cyy: float, bxx: float, bxy: float, byy: float
+) -> tuple[float, float, float]:
+    """Return the symmetric S that minimises sum |dn - S dx|^2 over pairs (dx, dn).
+
+    Parameters
+    ----------
+    cxx, cxy, cyy : float
+        C = sum dx dx^T, positive definite.
+    bxx, bxy, byy : float
+        Symmetric part of B = sum dn dx^T.
+
+    Returns
+    -------
+    tuple of float
+        Entries xx, xy, yy of S.
+
+    Notes
+    -----
+    The normal equations are S C + C S = B + B^T. In the plane their solution is
+    S = (Q + adj(C) Q adj(C) / det C) / tr C with Q = (B + B^T)/2: no pivoting, and exact to
+    rounding times the condition of C.
+    """
+    det = cxx * cyy - cxy * cxy
+    trace = cxx + cyy
+    # adj(C) Q adj(C), with adj(C) = [[cyy, -cxy], [-cxy, cxx]]
+    pxx = cyy * bxx - cxy * bxy
+    pxy = cyy * bxy - cxy * byy
+    qyx = -cxy * bxx + cxx * bxy
+    qyy = -cxy * bxy + cxx * byy
+    rxx = pxx * cyy - pxy * cxy
+    rxy = -pxx * cxy + pxy * cxx
+    ryy = -qyx * cxy + qyy * cxx
+    return (bxx + rxx / det) / trace, (bxy + rxy / det) / trace, (byy + ryy / det) / trace
+
+
+@compiled()
+def principal(sxx: float, sxy: float, syy: float) -> tuple[float, float, float, float]:
+    """Return the eigenvalues of a symmetric tensor and the direction of the larger.
+
+    Parameters
+    ----------
+    sxx, sxy, syy : float
+        Its entries.
+
+    Returns
+    -------
+    tuple of float
+        k1 >= k2, and the unit vector (c, s) that belongs to k1; (1, 0) where they are equal.
+    """
+    half = 0.5 * (sxx - syy)
+    radius = np.hypot(half, sxy)
+    middle = 0.5 * (sxx + syy)
+    if radius < 1e-150:  # its square underflows: as good as equal
+        return middle, middle, 1.0, 0.0
+    # Half of the angle of (half, sxy), by the half-angle formula that does not cancel.
+    if half >= 0.0:
+        c, s = radius + half, sxy
+    else:
+        c, s = abs(sxy), (radius - half) * (1.0 if sxy >= 0.0 else -1.0)
+    length = np.hypot(c, s)
+    return middle + radius, middle - radius, c / length, s / length
+
+
+@compiled()
+def write_principal(
+    at: int,
+    normal: Vector,
+    tensor: tuple[float, float, float],
+    k: FloatArray,
+    directions: FloatArray,
+) -> None:
+    """Store what follows from a tensor given in the `tangent_frame` of a normal.
+
+    Parameters
+    ----------
+    at : int
+        Vertex to write.
+    normal : tuple of float
+        Unit normal.
+    tensor : tuple of float
+        Entries xx, xy, yy.
+    k : ndarray, shape=(2, n)
+        Receives k1 and k2.
+    directions : ndarray, shape=(2, n, 3)
+        Receives d1 and d2, with d1 x d2 = normal.
+    """
+    u, v = tangent_frame(normal[0], normal[1], normal[2])
+    k1, k2, c, s = principal(tensor[0], tensor[1], tensor[2])
+    k[0, at] = k1
+    k[1, at] = k2
+    for axis in range(3):
+        directions[0, at, axis] = c * u[axis] + s * v[axis]
+        directions[1, at, axis] = c * v[axis] - s * u[axis]

@@ -1,0 +1,175 @@
+"""A mesh as estimators want it: centred, coincident vertices merged, nothing degenerate.
+
+The bits of two positions must agree for their vertices to be merged: that joins triangle soup
+(STL) and duplicated seams, and never closes a gap that is in the data.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import prange
+
+from lutcore.arrays import AnyArray, BoolArray, FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.mesh import TriangleMesh
+
+# A face whose doubled area is below this share of its longest edge squared has no normal: at
+# that thinness a float64 cross product is rounding.
+_THINNEST = 1e-12
+
+
+@dataclass(frozen=True)
+class Welded:
+    """A mesh made ready, and the way back.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or None
+        The ready mesh; None if no face of the input has an area.
+    index : ndarray of int32, shape=(n,)
+        Vertex of `mesh` that stands for each vertex of the input; -1 for one without faces.
+    """
+
+    mesh: TriangleMesh | None
+    index: IndexArray
+
+    def spread(self, values: AnyArray, missing: AnyArray | float) -> AnyArray:
+        """Return values of the ready mesh's vertices as values of the input's vertices.
+
+        Parameters
+        ----------
+        values : ndarray, shape=(w, ...)
+            One value for each vertex of the ready mesh.
+        missing : float or ndarray
+            Value where the input's vertex has no face.
+
+        Returns
+        -------
+        ndarray, shape=(n, ...)
+            One value for each vertex of the input, in its order.
+        """
+        if self.mesh is not None and len(self.index) == len(self.mesh.vertices):
+            return values  # nothing was merged or dropped: both number the vertices alike
+        out = values[self.index]
+        out[self.index < 0] = missing
+        return out
+
+
+def weld(mesh: TriangleMesh) -> Welded:
+    """Centre a mesh, merge its coincident vertices and drop what carries no surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Any mesh.
+
+    Returns
+    -------
+    Welded
+        The ready mesh and the map back to the input's vertices.
+    """
+    same = _first_of_same(mesh.vertices)
+    good, used = _good_faces(mesh.vertices, mesh.faces, same)
+    kept = int(np.count_nonzero(used))
+    if kept == 0:
+        return Welded(None, np.full(len(mesh.vertices), -1, np.int32))
+    if kept == len(used):
+        index = np.arange(kept, dtype=np.int32)
+        points, faces = mesh.vertices, mesh.faces
+    else:
+        number = np.where(used, np.cumsum(used, dtype=np.int32) - np.int32(1), np.int32(-1))
+        index = number[same].astype(np.int32)
+        points = mesh.vertices[used]
+        faces = index[mesh.faces]
+    if not good.all():
+        faces = faces[good]
+    return Welded(TriangleMesh.trusted(_centred(points), faces), index)
+
+
+@compiled(parallel=True)
+def _centred(points: FloatArray) -> FloatArray:
+    """Return the points relative to the middle of the box around them."""
+    middle = np.empty(3)
+    for axis in prange(3):
+        low = high = points[0, axis]
+        for i in range(len(points)):
+            low, high = min(low, points[i, axis]), max(high, points[i, axis])
+        middle[axis] = 0.5 * (low + high)
+    out = np.empty_like(points)
+    for i in prange(len(points)):
+        for axis in range(3):
+            out[i, axis] = points[i, axis] - middle[axis]
+    return out
+
+
+@compiled()
+def _first_of_same(vertices: FloatArray) -> IndexArray:
+    """Return for each vertex the first vertex with the same position, by open addressing."""
+    count = len(vertices)
+    bits = 4
+    while (1 << bits) < 2 * count:
+        bits += 1
+    mask = np.uint64((1 << bits) - 1)
+    # A slot holds vertex + 1 and, above it, 32 bits of the hash: most unlike vertices are told
+    # apart without looking at their positions.
+    table = np.zeros(1 << bits, np.uint64)
+    words = vertices.view(np.uint64)
+    sign = np.uint64(1 << 63)
+    first = np.empty(count, np.int32)
+    for vertex in range(count):
+        code = np.uint64(0)
+        for axis in range(3):
+            word = words[vertex, axis]
+            if word == sign:  # minus zero is zero
+                word = np.uint64(0)
+            code = (code ^ word) * np.uint64(0x9E3779B97F4A7C15)
+            code ^= code >> np.uint64(29)
+        slot = code & mask
+        tag = (code >> np.uint64(32)) << np.uint64(32)
+        while True:
+            entry = table[slot]
+            if entry == 0:
+                table[slot] = tag | np.uint64(vertex + 1)
+                first[vertex] = vertex
+                break
+            if (entry ^ tag) >> np.uint64(32) == 0:
+                other = np.int64(entry & np.uint64(0xFFFFFFFF)) - 1
+                if (
+                    vertices[other, 0] == vertices[vertex, 0]
+                    and vertices[other, 1] == vertices[vertex, 1]
+                    and vertices[other, 2] == vertices[vertex, 2]
+                ):
+                    first[vertex] = other
+                    break
+            slot = (slot + np.uint64(1)) & mask
+    return first
+
+
+@compiled(parallel=True)
+def _good_faces(
+    vertices: FloatArray, faces: IndexArray, same: IndexArray
+) -> tuple[BoolArray, BoolArray]:
+    """Return which faces have an area, and which vertices those use."""
+    good = np.empty(len(faces), np.bool_)
+    for face in prange(len(faces)):
+        a, b, c = same[faces[face, 0]], same[faces[face, 1]], same[faces[face, 2]]
+        ux = vertices[b, 0] - vertices[a, 0]
+        uy = vertices[b, 1] - vertices[a, 1]
+        uz = vertices[b, 2] - vertices[a, 2]
+        vx = vertices[c, 0] - vertices[a, 0]
+        vy = vertices[c, 1] - vertices[a, 1]
+        vz = vertices[c, 2] - vertices[a, 2]
+        wx, wy, wz = vx - ux, vy - uy, vz - uz
+        longest = max(
+            ux * ux + uy * uy + uz * uz,
+            vx * vx + vy * vy + vz * vz,
+            wx * wx + wy * wy + wz * wz,
+        )
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        good[face] = np.sqrt(x * x + y * y + z * z) > _THINNEST * longest
+    used = np.zeros(len(vertices), np.bool_)
+    for face in range(len(faces)):
+        if good[face]:
+            for j in range(3):
+                used[same[faces[face, j]]] = True
+    return good, used

@@ -1,0 +1,1 @@
+"""Plug-ins: one published method, one file."""

@@ -1,0 +1,1 @@
+"""Diffusion profiles: one published method, one file."""

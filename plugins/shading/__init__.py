@@ -1,0 +1,1 @@
+"""Shading models: one published method, one file."""

@@ -1,0 +1,72 @@
+"""The paper's method as its section 4 and figure 1 used it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import prange
+
+from lutcore.arrays import FloatArray
+from lutcore.baking import bake
+from lutcore.compiled import compiled
+from lutcore.fresnel import mean_transmittance
+from lutcore.lights import light_at
+from lutcore.lut import BLOCK, even_forms
+from lutcore.shading import ShadingInputs, ShadingModel, invariants, model_registry
+
+
+@model_registry.register("kolchin2007-simplified")
+@dataclass(frozen=True)
+class Kolchin2007Simplified(ShadingModel):
+    """M = sum over lights of E <F_t> p(w3, l_u sqrt((1 - w3^2)(k1^2 + k2^2)/2)): section 4 of [1]_.
+
+    The light's azimuth is ignored; on a sphere that changes nothing. Concave curvature is 0
+    (section 3), so that k1 and k2 here are those that are clamped.
+
+    The slips of the printed text are those of `kolchin2007`: "k1 l_d, k2 l_d >> 1" for "<< 1"; the
+    factor alpha'/(4 pi^2) before p for alpha'/(4 pi); and convex curvature is negative there.
+
+    References
+    ----------
+    .. [1] K. Kolchin, "Curvature-Based Shading of Translucent Materials, such as Human Skin",
+       GRAPHITE 2007.
+    """
+
+    def shade(self, inputs: ShadingInputs) -> FloatArray:
+        """Compute what leaves the surface; see `ShadingModel.shade`."""
+        table = bake(inputs.material)
+        arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
+        total = table.total * mean_transmittance(table.eta)
+        return _exitance(*arguments, total, table.mean_free_path, table.rows, table.inverse_step)
+
+
+@compiled(parallel=True)
+def _exitance(
+    points: FloatArray,
+    normals: FloatArray,
+    shape: FloatArray,
+    lights: FloatArray,
+    total: FloatArray,
+    length: FloatArray,
+    rows: FloatArray,
+    steps: FloatArray,
+) -> FloatArray:
+    out = np.zeros((len(points), 3))
+    corner, weight = np.zeros(1), np.ones(1)  # no Fresnel factor inside the integral
+    for block in prange((len(points) + BLOCK - 1) // BLOCK):
+        first = block * BLOCK
+        count = min(BLOCK, len(points) - first)
+        cosine, kappa, strength = np.empty(count), np.empty(count), np.empty(count)
+        for light in range(len(lights)):
+            for k in range(count):
+                i = first + k
+                x, y, z, strength[k] = light_at(
+                    lights, light, points[i, 0], points[i, 1], points[i, 2]
+                )
+                cosine[k] = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
+                squares = invariants(shape, i)[1]
+                kappa[k] = np.sqrt(max(1.0 - cosine[k] * cosine[k], 0.0) * 0.5 * squares)
+            for c in range(3):
+                p = even_forms(weight, corner, cosine, kappa, length[c], rows, steps, c)
+                for k in range(count):
+                    out[first + k, c] += lights[light, 8 + c] * strength[k] * total[c] * p[k]
+    return out

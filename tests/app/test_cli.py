@@ -1,0 +1,324 @@
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.cli import main as entry
+from app.cli.main import COMMANDS, main
+from app.session import read
+
+SMALL = ["--size", "160x120"]
+FAST = ["--method", "rusinkiewicz2004"]
+
+
+def image(path):
+    return np.asarray(Image.open(path))
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out.png"
+
+
+def object_of(capsys):
+    captured = capsys.readouterr()
+    return json.loads(captured.out), captured.err
+
+
+def test_help_lists_every_command(capsys):
+    assert main([]) == 0
+    shown = capsys.readouterr().out
+    assert all(command in shown for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(command, capsys):
+    assert main([command, "--help"]) == 0
+    assert f"curvelight {command}" in capsys.readouterr().out
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys; from app.cli.main import main; main(['--help']);"
+        "heavy = ('numpy', 'numba', 'vtkmodules', 'scipy', 'msgspec');"
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_figure_shows_skin_left_and_curvature_right(out, capsys):
+    assert (
+        main(["figure", "sample:marble-face", "-o", str(out), "--json", "--size", "680x400"]) == 0
+    )
+    result, _ = object_of(capsys)
+    picture = image(out).astype(int)
+    assert picture.shape == (400, 680, 3)
+    left, right = picture[:, :300], picture[:, 320:600]
+    lit = left[left.sum(axis=2) > 250]
+    assert (lit[:, 0] > lit[:, 2] + 20).mean() > 0.95  # skin: red above blue
+    green = ((right[..., 1] > right[..., 0] + 20) & (right[..., 1] > right[..., 2] + 20)).mean()
+    red = ((right[..., 0] > right[..., 1] + 60) & (right[..., 0] > 120)).mean()
+    assert green > 0.1
+    assert red > 0.01
+    low, high = result["range_per_mm"]
+    assert 0.0 <= low < high < 1.0
+
+
+def test_shade_writes_a_picture_and_says_what_it_did(out, capsys):
+    code = main(["shade", "sample:torus", "-o", str(out), "--json", *SMALL, *FAST])
+    result, errors = object_of(capsys)
+    assert code == 0
+    assert errors == ""
+    assert image(out).shape == (120, 160, 3)
+    assert result["model"] == "curvature-lut"
+    assert result["mm_per_unit"] == 1.0
+    assert result["exitance"]["red"]["p99"] > result["exitance"]["blue"]["p99"] > 0.0
+
+
+@pytest.mark.parametrize("suffix", ["vtp", "ply", "npz"])
+def test_shade_writes_data(tmp_path, suffix, capsys):
+    path = tmp_path / f"x.{suffix}"
+    assert main(["shade", "sample:saddle", "-o", str(path), *FAST, "--quiet"]) == 0
+    assert path.stat().st_size > 1000
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("suffix", ["png", "vtp", "ply", "csv", "npz"])
+def test_curvature_writes_pictures_and_data(tmp_path, suffix, capsys):
+    path = tmp_path / f"x.{suffix}"
+    assert main(["curvature", "sample:sphere", "-o", str(path), "--json", *FAST]) == 0
+    result, _ = object_of(capsys)
+    assert path.exists()
+    assert result["percentiles"]["mean"]["p50"] == pytest.approx(0.1, rel=0.01)
+    assert result["not_estimated"] == 0
+
+
+def test_curvature_data_match_the_exact_curvature_beside_the_sample(tmp_path):
+    from app.samples import sample
+
+    path = tmp_path / "x.npz"
+    assert main(["curvature", "sample:torus", "-o", str(path), "--quiet"]) == 0
+    with np.load(path) as found, np.load(sample("torus").exact) as exact:
+        error = np.hypot(found["k1"] - exact["k1"], found["k2"] - exact["k2"])
+        scale = np.sqrt(np.mean(exact["k1"] ** 2 + exact["k2"] ** 2))
+    # A 5 000-vertex torus has 14 edges around its tube; auto is within 2 % of its curvature there.
+    assert np.sqrt(np.mean(error**2)) < 0.02 * scale
+
+
+def test_compare_draws_models_side_by_side_and_reports_their_difference(out, capsys):
+    arguments = ["compare", "sample:torus", "-o", str(out), "--models", "lambert,curvature-lut"]
+    assert main([*arguments, "--difference", "--json", *FAST, "--size", "600x200"]) == 0
+    result, _ = object_of(capsys)
+    assert result["models"] == ["lambert", "curvature-lut"]
+    assert 0.0 < result["ciede2000"]["mean"] < result["ciede2000"]["p99"] < 50.0
+    assert image(out).shape == (200, 600, 3)
+
+
+def test_a_saved_session_gives_the_same_picture_bit_for_bit(tmp_path, capsys):
+    one, other, saved = (tmp_path / name for name in ("1.png", "2.png", "s.json"))
+    flags = ["--material", "marble", "--model", "wrap", "--width", "0.4", *SMALL, *FAST]
+    lights = ["--light", "-1,0.5,1,0.7", "--point-light", "20,20,20,900", "--camera", "oblique"]
+    arguments = ["sample:torus", *flags, *lights]
+    assert main(["shade", *arguments, "-o", str(one), "--save-session", str(saved)]) == 0
+    session = read(saved)
+    assert session.model.parameters == {"width": 0.4}
+    assert [type(light).__name__ for light in session.lights] == ["Directional", "Point"]
+    again = ["shade", "sample:torus", "--session", str(saved), "-o", str(other)]
+    assert main(again) == 0
+    np.testing.assert_array_equal(image(one), image(other))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_models_parameters_are_flags_with_their_range_in_the_help(capsys):
+    assert main(["shade", "--model", "wrap", "--help"]) == 0
+    assert "--width" in capsys.readouterr().out
+    arguments = ["shade", "sample:torus", "-o", "x.png", "--model", "wrap", "--width", "7"]
+    assert main(arguments) == 2
+    assert "width" in capsys.readouterr().err
+
+
+def test_scale_auto_undoes_a_session_files_scale(tmp_path):
+    saved = tmp_path / "s.json"
+    flags = ["sample:torus", "-o", str(tmp_path / "a.npz"), "--save-session", str(saved), *FAST]
+    assert main(["curvature", *flags, "--scale", "0.5", "--quiet"]) == 0
+    assert read(saved).scale == 0.5
+    again = [*flags, "--session", str(saved), "--scale", "auto", "--quiet"]
+    assert main(["curvature", *again]) == 0
+    assert read(saved).scale is None
+
+
+def test_models_materials_and_samples_list_themselves(capsys):
+    assert main(["models"]) == 0
+    assert "kolchin2007-simplified" in capsys.readouterr().out
+    assert main(["models", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert listed["shading model"]["wrap"]["parameters"]["width"]["default"] == 0.2
+    assert main(["materials", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)) == 12
+    assert main(["samples", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["marble-face-raw"]["vertices"] == 85_849
+
+
+@pytest.mark.parametrize("suffix", ["npz", "exr", "png"])
+@pytest.mark.parametrize("plane", [[], ["--plane", "32"]])
+def test_lut_writes_tables(tmp_path, suffix, plane):
+    path = tmp_path / f"t.{suffix}"
+    assert main(["lut", "skin1", "-o", str(path), *plane]) == 0
+    assert path.stat().st_size > 100
+
+
+def test_doctor_says_what_draws(capsys):
+    assert main(["doctor", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["drawing"]["renderer"]
+    assert found["problem"] == ""
+
+
+def test_doctor_names_what_is_missing_without_drawing(capsys, monkeypatch):
+    from app import gl
+
+    monkeypatch.setattr(gl, "missing_packages", lambda: ["libegl1"])
+    assert main(["doctor"]) == 1
+    assert "apt-get install libegl1" in capsys.readouterr().out
+
+
+def test_doctor_survives_a_driver_that_crashes(capsys, monkeypatch):
+    from app.cli import doctor
+
+    monkeypatch.setattr(doctor.sys, "executable", "false")
+    assert main(["doctor"]) == 1
+    assert "drawing ended with code 1" in capsys.readouterr().out
+
+
+BAD_INPUT = {
+    "empty.ply": (b"", 3),
+    "text.ply": (b"Dear all, the meeting is moved to Thursday.\n", 3),
+    "truncated.stl": (b"\0" * 80 + (1000).to_bytes(4, "little") + b"\0" * 70, 3),
+    "huge.ply": (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+        b"property float y\nproperty float z\nelement face 1\n"
+        b"property list uchar int vertex_indices\nend_header\n\0\0\0\0",
+        3,
+    ),
+    "nan.obj": (b"v nan nan nan\nv nan nan nan\nv nan nan nan\nf 1 2 3\n", 4),
+    "index.off": (b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", 3),
+    "points.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", 4),
+    "unknown.xyz": (b"1 2 3\n4 5 6\n", 3),
+}
+
+
+@pytest.mark.parametrize("name", BAD_INPUT)
+def test_a_bad_file_gets_one_clear_line_and_its_exit_code(name, tmp_path, out, capfd):
+    content, code = BAD_INPUT[name]
+    (tmp_path / name).write_bytes(content)
+    found = main(["shade", str(tmp_path / name), "-o", str(out)])
+    captured = capfd.readouterr()
+    assert found in (3, 4)
+    assert found == code
+    assert captured.out == ""
+    assert len(captured.err.splitlines()) == 1
+    assert name in captured.err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("place", ["missing.ply", "."])
+def test_a_path_that_is_no_file_exits_3(place, tmp_path, out, capsys):
+    assert main(["shade", str(tmp_path / place), "-o", str(out)]) == 3
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["nonsense"],
+        ["shade"],
+        ["shade", "sample:torus"],
+        ["shade", "sample:nothing", "-o", "x.png"],
+        ["shade", "sample:torus", "-o", "x.docx"],
+        ["shade", "sample:torus", "-o", "x.png", "--model", "phong"],
+        ["shade", "sample:torus", "-o", "x.png", "--material", "granite"],
+        ["shade", "sample:torus", "-o", "x.png", "--light", "1,2"],
+        ["shade", "sample:torus", "-o", "x.png", "--light", "0,0,0"],
+        ["shade", "sample:torus", "-o", "x.png", "--size", "huge"],
+        ["shade", "sample:torus", "-o", "x.png", "--camera", "behind"],
+        ["curvature", "sample:torus", "-o", "x.png", "--scale", "wide"],
+        ["curvature", "sample:torus", "-o", "x.png", "--scale", "-1"],
+        ["curvature", "sample:torus", "-o", "x.png", "--range", "3,1"],
+        ["compare", "sample:torus", "-o", "x.png"],
+        ["compare", "sample:torus", "-o", "x.png", "--models", "lambert"],
+        ["lut", "granite", "-o", "x.npz"],
+    ],
+)
+def test_wrong_usage_exits_2_and_writes_nothing(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    assert capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_place_that_cannot_be_written_is_found_before_the_work(tmp_path, capsys):
+    gone = tmp_path / "no" / "such" / "folder" / "x.png"
+    assert main(["shade", "sample:torus", "-o", str(gone)]) == 1
+    assert "make the folder first" in capsys.readouterr().err
+
+
+def test_a_full_disk_leaves_the_old_file_and_no_other(tmp_path):
+    pytest.importorskip("resource")  # limits on the size of a file are POSIX
+    out = tmp_path / "x.ply"
+    out.write_bytes(b"old")
+    code = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "from app.cli.main import main;"
+        "import app.cli.shade, lutcore.shading, lutcore.estimation;"
+        f"main(['shade', 'sample:torus', '-o', {str(tmp_path / 'warm.npz')!r}]);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000));"
+        f"sys.exit(main(['shade', 'sample:torus', '-o', {str(out)!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    assert "cannot be written" in done.stderr
+    assert out.read_bytes() == b"old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["warm.npz", "x.ply"]
+
+
+def test_an_interrupt_leaves_nothing_half_written(out, tmp_path, monkeypatch, capsys):
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("PIL.Image.Image.save", stop)
+    assert main(["shade", "sample:torus", "-o", str(out), *SMALL, *FAST]) == 130
+    assert "interrupted" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_fault_of_ours_is_one_line_and_a_traceback_only_when_asked(out, monkeypatch, capsys):
+    def fault(*_: object) -> None:
+        raise RuntimeError("boom")
+
+    monkeypatch.setattr("app.picture.render", fault)
+    arguments = ["shade", "sample:torus", "-o", str(out), *FAST, "--quiet"]
+    assert main(arguments) == 1
+    errors = capsys.readouterr().err
+    assert "boom" in errors
+    assert "Traceback" not in errors
+    assert main([*arguments, "--verbose"]) == 1
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_numbers_that_begin_with_a_minus_are_values():
+    assert entry._joined(["--light", "-1,0,0", "-o", "x"]) == ["--light=-1,0,0", "-o", "x"]
+    assert entry._joined(["--light=1,0,0", "-1,0"]) == ["--light=1,0,0", "-1,0"]
+
+
+def test_a_reader_that_leaves_early_is_no_fault():
+    code = "import sys; from app.cli.main import main; sys.exit(main(['materials']))"
+    writer = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    writer.stdout.close()
+    _, errors = writer.communicate()
+    assert writer.returncode == 0, errors

@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from app.picture import render
+from app.pipeline import Pipeline
+from app.quantities import QUANTITIES, robust_range
+from app.session import Camera, Directional, Method, Session
+from lutcore.errors import ParameterError
+
+TORUS = Session(mesh="sample:torus", estimator=Method("rusinkiewicz2004"), size=(160, 120))
+
+
+@pytest.fixture(scope="module")
+def pipeline():
+    return Pipeline()
+
+
+@pytest.mark.parametrize("view", ["shade", "curvature", "figure"])
+def test_a_session_gives_the_same_picture_bit_for_bit(view, pipeline):
+    session = replace(TORUS, view=view)
+    one, other = render(session, pipeline), render(session, Pipeline())
+    np.testing.assert_array_equal(one.image, other.image)
+    assert one.image.shape == (120, 160, 3)
+    assert one.image.std() > 5.0
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_every_quantity_is_drawn(quantity, pipeline):
+    made = render(replace(TORUS, view="curvature", quantity=quantity), pipeline)
+    low, high = made.range
+    assert low < high
+
+
+def test_lengths_on_the_colour_bar_are_millimetres(pipeline):
+    session = replace(TORUS, view="curvature")
+    one = render(session, pipeline).range
+    tenth = render(replace(session, mm_per_unit=10.0), pipeline).range
+    np.testing.assert_allclose(np.multiply(tenth, 10.0), one, rtol=1e-9)
+
+
+def test_a_given_range_and_exposure_are_used(pipeline):
+    made = render(replace(TORUS, view="figure", range=(0.0, 1.0), exposure=2.0), pipeline)
+    assert made.range == (0.0, 1.0)
+    assert made.exposure == 2.0
+
+
+def test_a_stronger_light_needs_a_lower_exposure_and_gives_the_same_picture(pipeline):
+    one = replace(TORUS, lights=(Directional((0.0, 0.0, 1.0), (1.0, 1.0, 1.0)),))
+    two = replace(TORUS, lights=(Directional((0.0, 0.0, 1.0), (4.0, 4.0, 4.0)),))
+    first, second = render(one, pipeline), render(two, pipeline)
+    assert first.exposure == pytest.approx(4.0 * second.exposure)
+    np.testing.assert_array_equal(first.image, second.image)
+
+
+def test_a_comparison_has_one_exposure_and_states_the_difference(pipeline):
+    pair = (Method("lambert"), Method("curvature-lut"))
+    made = render(replace(TORUS, view="compare", compared=pair, difference=True), pipeline)
+    assert set(made.difference) == {"mean", "p99", "max"}
+    same = render(replace(TORUS, view="compare", compared=(pair[0], pair[0])), pipeline)
+    half = same.image.shape[1] // 2
+    # One step in 255: the halves lie at different places, so interpolation rounds differently.
+    apart = np.abs(np.subtract(same.image[:90, :half], same.image[:90, half:], dtype=int))
+    assert apart.max() <= 1
+
+
+def test_a_comparison_of_one_is_refused(pipeline):
+    with pytest.raises(ParameterError, match="two models"):
+        render(replace(TORUS, view="compare", compared=(Method("lambert"),)), pipeline)
+
+
+def test_a_camera_in_numbers_is_used_and_a_parallel_one_has_no_perspective(pipeline):
+    camera = Camera((0.0, 60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), height=30.0)
+    made = render(replace(TORUS, camera=camera), pipeline)
+    assert made.camera == camera
+    # The torus lies in the xy plane and reaches 13.5 on either side: 27/30 of the height at most.
+    background = np.array([0x20, 0x24, 0x2A])
+    drawn = (made.image[:100] != background).any(axis=2)
+    assert drawn.any()
+
+
+def test_vertex_colours_are_albedo_unless_turned_off(tmp_path, pipeline):
+    path = tmp_path / "c.off"
+    corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+    lines = [f"{corner} 255 0 0 255" for corner in corners]
+    path.write_text("\n".join(["COFF", "4 2 0", *lines, "3 0 1 2", "3 0 2 3", ""]))
+    session = replace(TORUS, mesh=str(path), lights=(Directional((0.0, 0.0, 1.0)),))
+    center = render(session, pipeline).image[60, 80]
+    assert center[0] > 100
+    assert center[1] == center[2] == 0
+    assert render(replace(session, albedo=False), pipeline).image[60, 80, 1] > 100
+
+
+def test_the_robust_range_ignores_outliers_and_infinities_and_never_collapses():
+    values = np.concatenate([np.linspace(0.0, 1.0, 1000), [1e9, np.inf]])
+    low, high = robust_range(values)
+    assert 0.0 < low < 0.1 < 0.9 < high < 1.0
+    low, high = robust_range(np.full(10, 3.0))
+    assert low < 3.0 < high
+    assert robust_range(np.array([np.inf])) == (0.0, 1.0)

@@ -1,0 +1,17 @@
+"""Runs every measurement of the README: ``python -m tests.bench``."""
+
+import subprocess
+import sys
+
+SCRIPTS = ("start", "shading_accuracy", "shading_speed", "curvature", "pictures")
+
+
+def main() -> None:
+    """Run the scripts one after another, each in its own process so that none warms another."""
+    for script in SCRIPTS:
+        print(f"== python -m tests.bench.{script}", flush=True)
+        subprocess.run([sys.executable, "-m", f"tests.bench.{script}"], check=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,192 @@
+"""Speed and accuracy of the curvature estimators beside VTK's and libigl's, in one run.
+
+    python -m tests.bench.curvature [--size 1000000] [--accuracy 160000] [--json]
+
+Times are of the second call, on a mesh that is already in memory: ours from a TriangleMesh, VTK's
+from a vtkPolyData, for both principal curvatures. Errors are the RMS of |(k1, k2) - exact| over
+the RMS curvature, on a torus of radii 1 and .35; noise is along the normal, as a share of the
+mean edge.
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lutcore.analytic import Exact, torus
+from lutcore.estimation import principal_curvatures
+from lutcore.mesh import TriangleMesh
+
+OURS = ("rusinkiewicz2004", "co-smoothing", "auto")
+Pair = tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]
+
+
+def vtk_curvatures(mesh: TriangleMesh) -> Callable[[], Pair]:
+    """Return a call that computes VTK's minimum and maximum curvature."""
+    import pyvista as pv
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkObject
+    from vtkmodules.vtkFiltersGeneral import vtkCurvatures
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # it complains of each noisy vertex
+    vtkObject.GlobalWarningDisplayOff()
+    data = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces.astype(int))
+
+    def run() -> Pair:
+        found = []
+        for setting in ("SetCurvatureTypeToMaximum", "SetCurvatureTypeToMinimum"):
+            work = vtkCurvatures()
+            work.SetInputData(data)
+            getattr(work, setting)()
+            work.Update()
+            found.append(vtk_to_numpy(work.GetOutput().GetPointData().GetScalars()))
+        return found[0], found[1]
+
+    return run
+
+
+def igl_curvatures(mesh: TriangleMesh, radius: int) -> Callable[[], Pair]:
+    """Return a call that computes libigl's curvature by quadric fitting."""
+    import igl
+
+    def run() -> Pair:
+        found = igl.principal_curvature(mesh.vertices, mesh.faces.astype(np.int64), radius)
+        return found[2], found[3]
+
+    return run
+
+
+def our_curvatures(mesh: TriangleMesh, method: str) -> Callable[[], Pair]:
+    """Return a call that computes ours."""
+
+    def run() -> Pair:
+        found = principal_curvatures(mesh, method)
+        return found.k1, found.k2
+
+    return run
+
+
+def contestants(mesh: TriangleMesh) -> dict[str, Callable[[], Pair]]:
+    """Return what is compared, by name."""
+    calls = {name: our_curvatures(mesh, name) for name in OURS}
+    calls["VTK min/max"] = vtk_curvatures(mesh)
+    try:
+        for radius in (2, 5):
+            calls[f"libigl radius {radius}"] = igl_curvatures(mesh, radius)
+    except ImportError:
+        pass
+    return calls
+
+
+def relative_error(found: Pair, exact: Exact) -> float:
+    """Return the RMS error over the RMS curvature, whatever sign convention was used."""
+    k1, k2 = exact.truth.k1, exact.truth.k2
+    a, b = np.maximum(*found), np.minimum(*found)
+    size = float(np.sqrt(np.mean(k1**2 + k2**2)))
+    right = float(np.sqrt(np.mean((a - k1) ** 2 + (b - k2) ** 2)))
+    negated = float(np.sqrt(np.mean((-b - k1) ** 2 + (-a - k2) ** 2)))
+    return min(right, negated) / size
+
+
+def times(size: int, repeats: int) -> dict[str, dict[str, float]]:
+    """Return seconds of ours and VTK's on one regular mesh, the least of some repeats."""
+    mesh = torus(size).noisy(0.02)
+    calls = {name: call for name, call in contestants(mesh).items() if "libigl" not in name}
+    for call in calls.values():
+        call()
+    seconds = dict.fromkeys(calls, np.inf)
+    for _ in range(repeats):  # in turns, so that a busy moment hits all alike
+        for name, call in calls.items():
+            before = time.perf_counter()
+            call()
+            seconds[name] = min(seconds[name], time.perf_counter() - before)
+    reference = seconds["VTK min/max"]
+    return {
+        name: {"seconds": round(value, 3), "of_vtk": round(value / reference, 3)}
+        for name, value in seconds.items()
+    }
+
+
+def accuracy(size: int) -> dict[str, dict[str, float]]:
+    """Return the error of every method on both triangulations and three noises."""
+    table: dict[str, dict[str, float]] = {}
+    for irregular in (False, True):
+        exact = torus(size, irregular)
+        for share in (0.0, 0.02, 0.1):
+            column = f"{'irregular' if irregular else 'regular'} {share:g}"
+            mesh = exact.noisy(share) if share else exact.mesh
+            for name, call in contestants(mesh).items():
+                table.setdefault(name, {})[column] = round(relative_error(call(), exact), 5)
+    return table
+
+
+def peak_memory(size: int, method: str) -> float:
+    """Return the bytes a vertex that a method needs beyond mesh and interpreter, at its peak."""
+    command = [sys.executable, "-m", "tests.bench.curvature", "--memory", method]
+    # Freed arrays must go back to the system, or the mesh maker's would be used again unseen.
+    environment = {**os.environ, "MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TOP_PAD_": "0"}
+    out = subprocess.run(
+        [*command, "--size", str(size)], capture_output=True, check=True, env=environment
+    )
+    return float(out.stdout)
+
+
+def memory_of(size: int, method: str) -> float:
+    """Return the same for this process, which must have done nothing else."""
+    principal_curvatures(torus(40_000).mesh, method)  # compiled code loaded, threads started
+    mesh = torus(size).mesh
+    before = memory("VmRSS")
+    Path("/proc/self/clear_refs").write_text("5")  # the peak starts again from here
+    found = principal_curvatures(mesh, method)
+    return (memory("VmHWM") - before) / len(found.k1)
+
+
+def memory(field: str) -> float:
+    """Return the bytes that the system counts for this process (Linux)."""
+    line = re.search(rf"{field}:\s+(\d+) kB", Path("/proc/self/status").read_text())
+    assert line
+    return 1024.0 * float(line[1])
+
+
+def main() -> None:
+    """Run the comparison and print it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--size", type=int, default=1_000_000)
+    parser.add_argument("--accuracy", type=int, default=160_000)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--memory", metavar="METHOD", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.memory:
+        print(memory_of(options.size, options.memory))
+        return
+    report = {
+        "vertices": options.size,
+        "times": times(options.size, options.repeats),
+        "bytes_per_vertex": {name: round(peak_memory(options.size, name)) for name in OURS},
+        "accuracy": accuracy(options.accuracy),
+    }
+    if options.json:
+        print(json.dumps(report))
+        return
+    print(f"{options.size} vertices, seconds and share of VTK's")
+    for name, row in report["times"].items():
+        print(f"  {name:18} {row['seconds']:8.3f} {row['of_vtk']:8.3f}")
+    print("bytes per vertex beyond the mesh, at the peak")
+    for name, value in report["bytes_per_vertex"].items():
+        print(f"  {name:18} {value:8}")
+    print(f"relative error, {options.accuracy} vertices")
+    for name, row in report["accuracy"].items():
+        print(f"  {name:18}", "  ".join(f"{column} {value:.5f}" for column, value in row.items()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+import colour
+import numpy as np
+
+from lutcore.color import auto_exposure, srgb_bytes, srgb_decode
+from lutcore.metrics import ciede2000
+
+
+def test_encoding_is_the_standards_to_the_rounded_byte():
+    linear = np.random.default_rng(1).random((5000, 3))
+    peer = colour.cctf_encoding(linear, function="sRGB")
+    np.testing.assert_array_equal(srgb_bytes(linear, 1.0), np.floor(255.0 * peer + 0.5))
+
+
+def test_values_beyond_the_display_are_clipped_not_wrapped():
+    beyond = np.array([[-1.0, 0.0, 2.0], [1.0, 1e9, -1e9]])
+    assert srgb_bytes(beyond, 1.0).tolist() == [[0, 0, 255], [255, 255, 0]]
+
+
+def test_decoding_undoes_encoding_within_half_a_byte():
+    bytes_ = np.arange(256)
+    linear = srgb_decode(np.repeat(bytes_[:, None] / 255.0, 3, axis=1))
+    np.testing.assert_array_equal(srgb_bytes(linear, 1.0), np.repeat(bytes_[:, None], 3, axis=1))
+
+
+def test_exposure_scales_light_not_bytes():
+    linear = np.full((1, 3), 0.2)
+    np.testing.assert_array_equal(srgb_bytes(linear, 2.0), srgb_bytes(2.0 * linear, 1.0))
+
+
+def test_automatic_exposure_brings_the_bright_end_to_white_and_leaves_black_alone():
+    linear = np.linspace(0.0, 4.0, 1001)[:, None] * (1.0, 0.5, 0.25)
+    shown = np.percentile((auto_exposure(linear) * linear).max(axis=1)[1:], 99.0)
+    assert shown == np.float64(0.85) or abs(shown - 0.85) < 1e-12
+    assert auto_exposure(np.zeros((4, 3))) == 1.0
+
+
+def test_ciede2000_of_published_pairs():
+    # Sharma, Wu and Dalal 2005 give pairs in Lab; black against white is 100 in any encoding.
+    black, white = np.zeros((1, 3), np.uint8), np.full((1, 3), 255, np.uint8)
+    assert abs(ciede2000(black, white)[0] - 100.0) < 0.01
+    assert ciede2000(white, white)[0] == 0.0

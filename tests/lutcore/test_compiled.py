@@ -1,0 +1,44 @@
+import subprocess
+import sys
+
+import numba
+
+from lutcore import compiled
+from lutcore.compiled import cache_folder
+
+
+def test_the_cache_goes_where_it_is_told(tmp_path, monkeypatch):
+    monkeypatch.setenv("CURVELIGHT_CACHE_DIR", str(tmp_path / "here"))
+    assert cache_folder().is_relative_to(tmp_path / "here")
+
+
+def test_a_cache_that_cannot_be_written_goes_to_the_temporary_folder(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("CURVELIGHT_CACHE_DIR", str(tmp_path / "file" / "below"))
+    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    folder = cache_folder()
+    assert folder.is_dir()
+    assert folder.is_relative_to(tmp_path)
+
+
+def test_old_caches_are_removed_and_recent_ones_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("CURVELIGHT_CACHE_DIR", str(tmp_path))
+    old, recent = tmp_path / "compiled" / "old", tmp_path / "compiled" / "recent"
+    old.mkdir(parents=True)
+    recent.mkdir()
+    compiled.os.utime(old, (0.0, 0.0))
+    cache_folder()
+    assert not old.exists()
+    assert recent.exists()
+
+
+def test_compiling_leaves_numbas_own_setting_alone():
+    before = numba.config.CACHE_DIR
+    compiled.compiled()(lambda x: x)
+    assert before == numba.config.CACHE_DIR
+
+
+def test_importing_the_library_compiles_and_imports_nothing_heavy():
+    code = "import sys, lutcore; print('numba' in sys.modules, 'numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False False"

@@ -1,0 +1,52 @@
+"""The default model, against NumPy, the sphere's quadrature, and known errors of all models."""
+
+import numpy as np
+import pytest
+
+from lutcore.lights import DirectionalLight
+from lutcore.shading import shade
+from tests import numpy_shading
+from tests.bench.shading_accuracy import RATIOS, model_errors
+from tests.bench.shading_speed import LIGHTS
+from tests.surfaces import sphere, torus
+
+# Relative L2 error on the sphere, per cent, at RATIOS; found independently of this code.
+KNOWN = {
+    "lambert, <F_t>": (13.4, 3.6, 4.9, 5.4, 5.6),
+    "lambert, F_t(N.w)": (17.8, 4.0, 1.2, 0.35, 0.06),
+    "wrap": (23.0, 19.0, 20.0, 21.0, 21.0),
+    "kolchin2007-simplified": (12.9, 4.1, 5.0, 5.4, 5.6),
+    "kolchin2007": (12.9, 4.1, 5.0, 5.4, 5.6),
+    "curvature-lut": (1.5, 0.19, 0.13, 0.15, 0.19),
+}
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_errors_on_the_sphere_are_the_known_ones(ratio: int) -> None:
+    errors = model_errors(ratio)
+    for model, row in KNOWN.items():
+        assert errors[model] == pytest.approx(row[RATIOS.index(ratio)], rel=0.1), model
+
+
+@pytest.mark.parametrize("name", ["skin1", "marble"])
+def test_it_equals_plain_numpy(name: str) -> None:
+    surface = torus(3000)
+    np.testing.assert_allclose(
+        shade(*surface, name, LIGHTS, "curvature-lut"),
+        numpy_shading.curvature_lut(*surface, name, LIGHTS),
+        rtol=0.0,
+        # The compiled logarithm is good to 5e-13, psi's slope and the sum of lights to order 1.
+        atol=1e-11,
+    )
+
+
+def test_more_hinges_come_closer_to_the_true_sphere_when_it_is_large() -> None:
+    cosines = np.linspace(0.0, 1.0, 201)
+    light = [DirectionalLight((0.0, 0.0, 1.0))]
+    flat = sphere(cosines, np.inf)
+    truth = shade(*flat, "skin1", light, "lambert", fresnel="directional")
+    errors = [
+        np.abs(shade(*flat, "skin1", light, "curvature-lut", hinges=count) - truth).max()
+        for count in (1, 2, 4, 8, 16)
+    ]
+    assert errors == sorted(errors, reverse=True)
