@@ -8,7 +8,9 @@ import pyvista
 
 from app import export
 from app.session import FIGURE_LIGHTS
+from lutcore.arrays import finite
 from lutcore.color import auto_exposure
+from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight, Light
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
@@ -96,7 +98,7 @@ class CurvelightAccessor:
             A curvature estimator.
         scale : float, optional
             Length that curvature is averaged over, mesh units; if not given, `auto` takes the
-            least that hides the mesh's noise and that the material's light sees.
+            larger of the material's glow and three spacings of the mesh.
         exposure : float, optional
             Factor before encoding; brings the brightest parts near white if not given.
         **parameters : object
@@ -121,8 +123,11 @@ class CurvelightAccessor:
         from lutcore.shading import shade
 
         mesh = self._mesh()
+        per_unit = float(finite("mm_per_unit", mm_per_unit, ()))
+        if per_unit <= 0.0:
+            raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
         if scale is None and method == "auto":
-            scale = shading_scale(mesh, bake(material).glow / mm_per_unit)
+            scale = shading_scale(mesh, bake(material).glow / per_unit)
         curvatures = principal_curvatures(mesh, method, scale)
         chosen = _default_lights() if lights is None else lights
         exitance = shade(mesh, curvatures, material, chosen, model, mm_per_unit, **parameters)

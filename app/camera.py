@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.pipeline import Subject
-from app.session import Camera, SessionError, Vector
+from app.session import Camera, Vector
 from lutcore.arrays import FloatArray
 from lutcore.errors import ParameterError
 from lutcore.islands import main_islands
@@ -102,13 +102,13 @@ def axes(camera: Camera) -> FloatArray:
 
     Raises
     ------
-    SessionError
+    ParameterError
         If position and target coincide, or `up` is along the line of sight.
     """
     back = np.subtract(camera.position, camera.target)
     right = np.cross(camera.up, back)
     if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(back) * np.linalg.norm(camera.up):
-        raise SessionError("camera: position, target and up do not define a view")
+        raise ParameterError("camera: position, target and up do not define a view")
     back = back / np.linalg.norm(back)
     right = right / np.linalg.norm(right)
     return np.array([right, np.cross(back, right), back])

@@ -26,7 +26,7 @@ def table(name: str) -> FloatArray:
     Parameters
     ----------
     name : str
-        ``green-red``, or any name that matplotlib knows; ``_r`` at its end turns either round.
+        ``green-red``, or any name that matplotlib knows.
 
     Returns
     -------
@@ -39,10 +39,9 @@ def table(name: str) -> FloatArray:
         If there is no such map.
     """
     position = np.linspace(0.0, 1.0, ENTRIES)
-    if name in (PAPER, f"{PAPER}_r"):
+    if name == PAPER:
         stops = _GREEN_RED[:, 0]
-        colors = np.stack([np.interp(position, stops, c) for c in _GREEN_RED[:, 1:].T], axis=1)
-        return colors[::-1] if name.endswith("_r") else colors
+        return np.stack([np.interp(position, stops, c) for c in _GREEN_RED[:, 1:].T], axis=1)
     import matplotlib
 
     if name not in matplotlib.colormaps:

@@ -166,7 +166,14 @@ def _ply(path: Path, mesh: TriangleMesh, arrays: Arrays) -> None:
 
 def _vtp(path: Path, mesh: TriangleMesh, arrays: Arrays) -> None:
     import pyvista
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     data = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)  # type: ignore[arg-type]
     data.point_data.update(arrays)
-    data.save(path)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(data)
+    writer.SetDataModeToBinary()
+    # Into memory: on a full disk VTK's own writing ends the process.
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    path.write_text(writer.GetOutputString(), encoding="ascii")

@@ -28,10 +28,23 @@ def missing_packages() -> list[str]:
     list of str
         Empty where all is there, and on systems other than Linux.
     """
+    missing = missing_libraries()
+    if missing or not sys.platform.startswith("linux"):
+        return missing
+    return [] if _egl_starts() else [_DRIVERS]
+
+
+def missing_libraries() -> list[str]:
+    """Return the Debian packages whose libraries are not here, asking no driver.
+
+    Returns
+    -------
+    list of str
+        Empty where all is there, and on systems other than Linux.
+    """
     if not sys.platform.startswith("linux"):
         return []
-    missing = [package for library, package in _NEEDED.items() if not _loads(library)]
-    return missing or ([] if _egl_starts() else [_DRIVERS])
+    return [package for library, package in _NEEDED.items() if not _loads(library)]
 
 
 def require() -> None:

@@ -6,7 +6,11 @@ from app import gl
 
 
 def main() -> None:
-    """Print one line of JSON: renderer, vendor, version, window, software."""
+    """Print one line of JSON: what is missing, or renderer, vendor, version, window, software."""
+    missing = gl.missing_packages()
+    if missing:
+        print(json.dumps({"missing": missing}))  # noqa: T201
+        return
     import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
     from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 

@@ -128,7 +128,7 @@ def _quantised(values: FloatArray, rest: dict[str, Any]) -> tuple[FloatArray, di
 
 
 def _write(path: Path, pixels: FloatArray, rest: dict[str, Any], kind: type[np.generic]) -> None:
-    from OpenImageIO import ImageOutput, ImageSpec
+    from OpenImageIO import ImageInput, ImageOutput, ImageSpec
 
     rows, columns, channels = pixels.shape
     spec = ImageSpec(columns, rows, channels, np.dtype(kind).name.replace("float32", "float"))
@@ -137,9 +137,15 @@ def _write(path: Path, pixels: FloatArray, rest: dict[str, Any], kind: type[np.g
     output = ImageOutput.create(str(path))
     if output is None:
         raise OSError(f"no writer for {path.suffix} files")
-    good = output.open(str(path), spec) and output.write_image(pixels.astype(kind, order="C"))
+    stored = pixels.astype(kind, order="C")
+    good = output.open(str(path), spec) and output.write_image(stored)
     if not (good and output.close()):
         raise OSError(output.geterror())
+    # The PNG writer does not tell of a full disk; tables are small, so reading back is cheap.
+    again = ImageInput.open(str(path))
+    written = None if again is None else again.read_image(spec.format)
+    if written is None or not np.array_equal(written, stored):
+        raise OSError("it was not written whole: the disk may be full")
 
 
 def _read(path: str | Path) -> tuple[FloatArray, dict[str, Any]]:

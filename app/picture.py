@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import camera as cameras
-from app.colormaps import table
+from app.colormaps import PAPER, table
 from app.pipeline import Pipeline, Subject
 from app.quantities import QUANTITIES, robust_range
-from app.render import Image, Panel, draw
+from app.render import STRIP, Image, Panel, draw
 from app.scene import ColorScale, Surface
 from app.session import Camera, Method, Session
 from lutcore.arrays import FloatArray
@@ -19,6 +19,9 @@ from lutcore.errors import ParameterError
 from lutcore.fresnel import transmittance
 
 _BAR_PIXELS_PER_HEIGHT = 0.16
+_LEAST_BAR = 110.0
+_MOST_BAR = 0.35
+_LEAST_WIDTH = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +79,8 @@ class _Studio:
         self.session = session
         self.pipeline = pipeline
         self.subject: Subject = pipeline.subject(session)
-        self.bar_share = _BAR_PIXELS_PER_HEIGHT * session.size[1] / session.size[0]
+        bar = max(_BAR_PIXELS_PER_HEIGHT * session.size[1], _LEAST_BAR)
+        self.bar_share = min(bar / session.size[0], _MOST_BAR)
         self.has_bar = session.view in ("curvature", "figure") or session.difference
         self.count = {
             "shade": 1,
@@ -84,8 +88,15 @@ class _Studio:
             "figure": 2,
             "compare": len(session.compared) + session.difference,
         }[session.view]
+        if session.view == "compare" and len(session.compared) < 2:
+            raise ParameterError("a comparison needs two models or more")
         self.width = (1.0 - self.bar_share * self.has_bar) / self.count
-        aspect = self.width * session.size[0] / session.size[1]
+        if self.width * session.size[0] < _LEAST_WIDTH:
+            raise ParameterError(
+                f"a picture {session.size[0]} pixels wide leaves less than {_LEAST_WIDTH} for "
+                "each surface; make it wider"
+            )
+        aspect = self.width * session.size[0] / (session.size[1] * (1.0 - STRIP))
         self.camera = cameras.camera_of(session.camera, self.subject, aspect)
         self.axes = cameras.axes(self.camera)
         self.exposure: float | None = session.exposure
@@ -147,16 +158,17 @@ class _Studio:
         name = self.session.quantity
         size = self.pipeline.mm_per_unit(self.session)
         values = QUANTITIES[name].values(self._curvatures(), size)
-        self.range = self.session.range or robust_range(values)
-        scale = ColorScale(table(self.session.colormap), *self.range, QUANTITIES[name].title)
+        self.range = self.session.range or robust_range(values, self.session.symmetric)
+        colors = table(self.session.colormap or PAPER)
+        if self.session.flip:
+            colors = colors[::-1]
+        scale = ColorScale(colors, *self.range, QUANTITIES[name].title)
         # Infinite errors are drawn at the end of the scale.
         shown = np.nan_to_num(values, posinf=self.range[1])
         surface = self._surface(values=shown, scale=scale, lit=not self.session.flat)
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]
 
     def _comparison(self) -> list[Panel]:
-        if len(self.session.compared) < 2:
-            raise ParameterError("a comparison needs two models or more")
         linear = [self._linear(model) for model in self.session.compared]
         shown = [self._display(light) for light in linear]
         panels = [
@@ -175,7 +187,7 @@ class _Studio:
             "max": float(values.max()),
         }
         self.range = self.session.range or (0.0, max(1.0, self.difference["p99"]))
-        scale = ColorScale(table("magma"), *self.range, "CIEDE2000")
+        scale = ColorScale(table(self.session.colormap or "magma"), *self.range, "CIEDE2000")
         first, second = (model.name for model in self.session.compared[:2])
         surface = self._surface(values=values, scale=scale, caption=f"{second} against {first}")
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]

@@ -13,6 +13,7 @@ from app.samples import PREFIX, Sample, sample
 from app.session import Cone, Directional, Method, Point, Session, Substance
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.errors import MeshError
 from lutcore.lights import Light
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
@@ -84,7 +85,7 @@ class Pipeline:
         """
         found = sample(session.mesh) if session.mesh.startswith(PREFIX) else None
         path = found.path if found else Path(session.mesh)
-        stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else None
+        stamp = _stamp(path)
         return self._once(("subject", str(path), stamp), lambda: Subject(load_mesh(path), found))
 
     def mm_per_unit(self, session: Session) -> float:
@@ -117,18 +118,29 @@ class Pipeline:
         -------
         PrincipalCurvatures
             In 1/mesh unit.
+
+        Raises
+        ------
+        MeshError
+            If no face has an area.
         """
         from lutcore.estimation import principal_curvatures
 
         mesh = self.subject(session).mesh
         method = session.estimator
         scale = self.scale(session)
-        return self._once(
+        found = self._once(
             ("curvatures", *self._curvature_key(session)),
             lambda: principal_curvatures(
                 mesh, method=method.name, scale=scale, progress=self.progress, **method.parameters
             ),
         )
+        if not found.estimated.any():
+            raise MeshError(
+                f"{session.mesh}: none of its {len(mesh.faces)} faces has an area, so there is no "
+                "surface; choose another file"
+            )
+        return found
 
     def scale(self, session: Session) -> float | None:
         """Return the length that curvature is averaged over.
@@ -175,6 +187,23 @@ class Pipeline:
 
         return bake(self.material(session)).glow / self.mm_per_unit(session)
 
+    def floored(self, session: Session) -> bool:
+        """Tell whether the material absorbs too little for a glow that ends.
+
+        Parameters
+        ----------
+        session : Session
+            Its material is used.
+
+        Returns
+        -------
+        bool
+            True if some channel is shaded with the least absorption instead of its own.
+        """
+        from lutcore.baking import bake
+
+        return bool(bake(self.material(session)).floored.any())
+
     def material(self, session: Session) -> Material:
         """Return the session's material.
 
@@ -215,6 +244,7 @@ class Pipeline:
         ndarray, shape=(n, 3)
             Linear RGB; see `lutcore.shade`.
         """
+        from lutcore.lights import pack
         from lutcore.shading import shade
 
         curvatures = self.curvatures(session)
@@ -223,8 +253,8 @@ class Pipeline:
         key = (
             "exitance",
             *self._curvature_key(session),
-            _key((session.material, session.lights, model, self.mm_per_unit(session))),
-            axes.tobytes(),
+            _key((session.material, model, self.mm_per_unit(session))),
+            pack(lights).tobytes(),
         )
         return self._once(
             key,
@@ -250,6 +280,15 @@ class Pipeline:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
         return cast(T, self._kept[key])
+
+
+def _stamp(path: Path) -> tuple[int, int] | None:
+    """Tell one state of a file from another; None where the loader will say what is wrong."""
+    try:
+        found = path.stat()
+    except (OSError, ValueError):
+        return None
+    return found.st_mtime_ns, found.st_size
 
 
 def world_lights(session: Session, axes: FloatArray) -> list[Light]:

@@ -28,6 +28,11 @@ class Quantity:
     title: str
     power: int = 1
 
+    @property
+    def unit(self) -> str:
+        """Unit of the values that `values` returns."""
+        return ("1", "1/mm", "1/mm^2")[self.power]
+
     def values(self, curvatures: PrincipalCurvatures, mm_per_unit: float) -> FloatArray:
         """Return the values in millimetres.
 
@@ -58,13 +63,15 @@ QUANTITIES = {
 }
 
 
-def robust_range(values: FloatArray) -> tuple[float, float]:
+def robust_range(values: FloatArray, symmetric: bool = False) -> tuple[float, float]:
     """Return the range that shows most of the values.
 
     Parameters
     ----------
     values : ndarray
         Infinite ones are left out.
+    symmetric : bool
+        Whether the range is as wide below zero as above.
 
     Returns
     -------
@@ -75,5 +82,8 @@ def robust_range(values: FloatArray) -> tuple[float, float]:
     if finite.size == 0:
         return 0.0, 1.0
     low, high = (float(end) for end in np.percentile(finite, _ROBUST))
-    gap = 1e-6 * max(abs(low), abs(high), 1e-12)
-    return (low, high) if high - low > gap else (low - gap, high + gap)
+    if symmetric:
+        low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
+    # Where all is equal the range opens upwards, so that nothing looks large.
+    gap = 1e-3 * max(abs(low), abs(high), 1e-9)
+    return (low, high) if high - low > 1e-3 * gap else (low, low + gap)

@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import gl
-from app.scene import ColorScale, Surface, color, fill_bar, fill_surface
+from app.scene import ColorScale, Surface, color, fill_bar, fill_caption, fill_surface
 from app.session import Camera
 
 Image = NDArray[np.uint8]
 _SAMPLES = 4
+STRIP = 0.045
+"""Share of the picture's height below every surface, for its caption."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +77,17 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str) -> Ima
             renderer = vtkRenderer()
             renderer.SetBackground(*shade)
             renderer.AutomaticLightCreationOff()
-            renderer.SetViewport(left, 0.0, left + panel.width, 1.0)
-            left += panel.width
+            bottom = STRIP if isinstance(panel.content, Surface) else 0.0
+            renderer.SetViewport(left, bottom, left + panel.width, 1.0)
             window.AddRenderer(renderer)
-            _fill(panel)(renderer, size[1])
+            _fill(panel)(renderer, (panel.width * size[0], size[1]))
+            if isinstance(panel.content, Surface):
+                below = vtkRenderer()
+                below.SetBackground(*shade)
+                below.SetViewport(left, 0.0, left + panel.width, STRIP)
+                fill_caption(below, panel.content.caption, (panel.width * size[0], size[1]))
+                window.AddRenderer(below)
+            left += panel.width
         window.Render()
         return _grab(window, size)
     finally:
@@ -88,10 +97,10 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str) -> Ima
 def _fill(panel: Panel) -> Callable[..., None]:
     content, camera = panel.content, panel.camera
     if isinstance(content, ColorScale):
-        return lambda renderer, height: fill_bar(renderer, content, height)
+        return lambda renderer, pixels: fill_bar(renderer, content, pixels)
     if camera is None:
         raise ValueError("a panel with a mesh needs a camera")
-    return lambda renderer, height: fill_surface(renderer, content, camera, height)
+    return lambda renderer, _: fill_surface(renderer, content, camera)
 
 
 def _grab(window: object, size: tuple[int, int]) -> Image:

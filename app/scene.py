@@ -26,6 +26,9 @@ from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 
 _FONT_SHARE = 0.021
+_LEAST_FONT = 7
+# Width of a letter over the font's size, on the safe side.
+_LETTER = 0.56
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +113,7 @@ def color(text: str) -> tuple[float, float, float]:
     return red / 255.0, green / 255.0, blue / 255.0
 
 
-def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera, height: int) -> None:
+def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera) -> None:
     """Put a surface into a renderer, seen by a camera.
 
     Parameters
@@ -121,11 +124,10 @@ def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera, height
         What to draw.
     camera : Camera
         Where from.
-    height : int
-        Height of the picture in pixels, for the caption.
     """
-    # The GPU gets single precision: centring first keeps a mesh far from the origin exact.
-    origin = 0.5 * (surface.mesh.vertices.min(axis=0) + surface.mesh.vertices.max(axis=0))
+    # The GPU gets single precision: around what is looked at it stays exact, however far the mesh
+    # lies from the origin or stray parts lie from the mesh.
+    origin = np.asarray(camera.target)
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(_poly_data(surface, origin))
     if surface.scale is not None:
@@ -141,15 +143,31 @@ def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera, height
         actor.GetProperty().LightingOff()
     renderer.AddActor(actor)
     _aim(renderer, camera, origin)
-    if surface.caption:
-        text = _text(surface.caption, renderer, height)
-        text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
-        text.SetPosition(0.5, 0.015)
-        text.GetTextProperty().SetJustificationToCentered()
-        renderer.AddViewProp(text)
 
 
-def fill_bar(renderer: vtkRenderer, scale: ColorScale, height: int) -> None:
+def fill_caption(renderer: vtkRenderer, caption: str, pixels: tuple[float, float]) -> None:
+    """Put one line of text into a renderer; left out where it could not be read.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        An empty renderer.
+    caption : str
+        The line, or nothing.
+    pixels : tuple of 2 floats
+        Width that there is for it, and height of the picture.
+    """
+    size = _font_size(caption, pixels) if caption else 0
+    if size < _LEAST_FONT:
+        return
+    text = _text(caption, renderer, size)
+    text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    text.SetPosition(0.5, 0.25)
+    text.GetTextProperty().SetJustificationToCentered()
+    renderer.AddViewProp(text)
+
+
+def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, float]) -> None:
     """Put a colour bar with its numbers and its title into a renderer.
 
     Parameters
@@ -158,9 +176,10 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, height: int) -> None:
         An empty renderer.
     scale : ColorScale
         What to explain.
-    height : int
-        Height of the picture in pixels, for the text.
+    pixels : tuple of 2 floats
+        Width that there is for it, and height of the picture.
     """
+    size = _font_size(scale.title, pixels)
     bar = vtkScalarBarActor()
     bar.SetLookupTable(_lookup(scale))
     bar.SetMaximumNumberOfColors(256)
@@ -168,14 +187,14 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, height: int) -> None:
     bar.SetLabelFormat("{:.3g}" if _new_label_format() else "%.3g")
     bar.UnconstrainedFontSizeOn()
     for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
-        _style(style, renderer, height)
+        _style(style, renderer, size)
     bar.SetBarRatio(0.22)
     bar.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     bar.SetPosition(0.12, 0.12)
     bar.SetWidth(0.8)
     bar.SetHeight(0.72)
     renderer.AddViewProp(bar)
-    title = _text(scale.title, renderer, height)
+    title = _text(scale.title, renderer, size)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.5, 0.87)
     title.GetTextProperty().SetJustificationToCentered()
@@ -238,17 +257,24 @@ def _aim(renderer: vtkRenderer, camera: Camera, origin: FloatArray) -> None:
     renderer.ResetCameraClippingRange()
 
 
-def _text(words: str, renderer: vtkRenderer, height: int) -> vtkTextActor:
+def _font_size(words: str, pixels: tuple[float, float]) -> int:
+    """Size of letters that fit the width, and are in proportion to the height."""
+    width, height = pixels
+    longest = max(map(len, words.splitlines()))
+    return int(min(_FONT_SHARE * height, 0.95 * width / (_LETTER * longest)))
+
+
+def _text(words: str, renderer: vtkRenderer, size: int) -> vtkTextActor:
     text = vtkTextActor()
     text.SetInput(words)
-    _style(text.GetTextProperty(), renderer, height)
+    _style(text.GetTextProperty(), renderer, size)
     return text
 
 
-def _style(style: vtkTextProperty, renderer: vtkRenderer, height: int) -> None:
+def _style(style: vtkTextProperty, renderer: vtkRenderer, size: int) -> None:
     dark = sum(renderer.GetBackground()) < 1.5
     style.SetColor(*((0.86,) * 3 if dark else (0.1,) * 3))
-    style.SetFontSize(max(10, round(_FONT_SHARE * height)))
+    style.SetFontSize(max(_LEAST_FONT, size))
     style.SetFontFamilyToArial()
     style.ItalicOff()
     style.BoldOff()

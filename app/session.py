@@ -4,6 +4,8 @@ A session says everything that a picture depends on and nothing else: the same s
 same mesh gives the same picture, from the window and from the command line.
 """
 
+import math
+import os
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -25,7 +27,13 @@ class SessionError(CurvelightError):
 
 
 class _Part(Struct, frozen=True, forbid_unknown_fields=True):
-    pass
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            value = getattr(self, name)
+            numbers = value if isinstance(value, tuple) else (value,)
+            if not all(math.isfinite(one) for one in numbers if isinstance(one, float)):
+                # JSON cannot say them, so the session would come back as another.
+                raise ValueError(f"{name} = {value!r} is not finite")
 
 
 class Directional(_Part, frozen=True, tag="directional", tag_field="kind"):
@@ -101,8 +109,10 @@ class Session(_Part, frozen=True):
 
     `mesh` is a path or ``sample:NAME``; `mm_per_unit` None takes the sample's own scale, else
     1 mm; `scale` is the length in mesh units that curvature is averaged over, None chooses it;
-    `camera` is a view name (see `app.camera`) or a camera; `range` None takes robust percentiles;
-    `exposure` None brings the brightest parts near white.
+    `camera` is a view name (see `app.camera`) or a camera; `range` None takes robust percentiles,
+    `symmetric` makes it as wide below zero as above, `flip` turns the colour map round;
+    `colormap` None is the paper's for curvature and magma for differences; `exposure` None
+    brings the brightest parts near white.
     """
 
     mesh: str = "sample:marble-face-raw"
@@ -116,8 +126,10 @@ class Session(_Part, frozen=True):
     estimator: Method = Method("auto")
     scale: Positive | None = None
     quantity: Quantity = "curvedness"
-    colormap: str = "green-red"
+    colormap: str | None = None
     range: tuple[float, float] | None = None
+    symmetric: bool = False
+    flip: bool = False
     flat: bool = False
     albedo: bool = True
     exposure: Positive | None = None
@@ -125,6 +137,11 @@ class Session(_Part, frozen=True):
     size: tuple[Pixels, Pixels] = (1000, 1000)
     background: str = "#20242a"
     format: Literal[1] = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.range is not None and not self.range[0] < self.range[1]:
+            raise ValueError(f"range = {self.range!r}: the first must be below the second")
 
 
 def to_json(session: Session) -> bytes:
@@ -197,7 +214,7 @@ def read(path: Path) -> Session:
 
 
 def write(session: Session, path: Path) -> None:
-    """Write a session file, whole or not at all.
+    """Write a session file, whole or not at all; a relative mesh path follows the file.
 
     Parameters
     ----------
@@ -211,7 +228,16 @@ def write(session: Session, path: Path) -> None:
     WriteError
         If it cannot be written; an older file of that name is then untouched.
     """
+    if not session.mesh.startswith("sample:") and not Path(session.mesh).is_absolute():
+        session = msgspec.structs.replace(session, mesh=_seen_from(path.parent, session.mesh))
     write_bytes(path, to_json(session))
+
+
+def _seen_from(folder: Path, mesh: str) -> str:
+    try:
+        return os.path.relpath(Path(mesh).resolve(), folder.resolve())
+    except ValueError:  # on another drive of Windows
+        return str(Path(mesh).resolve())
 
 
 def replaced(session: Session, **changes: Any) -> Session:

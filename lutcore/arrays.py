@@ -70,7 +70,8 @@ def unit_vector(name: str, value: ArrayLike) -> FloatArray:
         If it is not a finite vector of three components, or zero.
     """
     vector = finite(name, value, (3,))
-    length = float(np.linalg.norm(vector))
-    if length == 0.0:
+    largest = float(np.abs(vector).max())
+    if largest == 0.0:
         raise ParameterError(f"{name} = {value!r} has no direction")
-    return vector / length
+    vector = vector / largest  # first, so that no square overflows
+    return vector / float(np.linalg.norm(vector))

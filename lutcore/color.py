@@ -7,9 +7,6 @@ from numpy.typing import NDArray
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
 
-# Rec. 709 luminance of linear sRGB primaries (IEC 61966-2-1).
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-
 
 def srgb_decode(encoded: FloatArray) -> FloatArray:
     """Return linear light from sRGB-encoded values.

@@ -8,9 +8,11 @@ that compiles anything.
 import hashlib
 import os
 import shutil
+import stat
 import tempfile
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -43,8 +45,9 @@ def _writable(folder: Path) -> bool:
 
 def _remove_stale(folder: Path) -> None:
     for old in folder.parent.iterdir():
-        if old != folder and time.time() - old.stat().st_mtime > _STALE_AFTER:
-            shutil.rmtree(old, ignore_errors=True)
+        with suppress(OSError):  # another process may have removed it first
+            if old != folder and time.time() - old.stat().st_mtime > _STALE_AFTER:
+                shutil.rmtree(old, ignore_errors=True)
 
 
 def cache_folder() -> Path:
@@ -62,13 +65,39 @@ def cache_folder() -> Path:
     if not folder.is_dir() and _writable(folder):
         _remove_stale(folder)
     if not _writable(folder):
-        user = os.getuid() if hasattr(os, "getuid") else 0
-        folder = Path(tempfile.gettempdir()) / f"curvelight-{user}" / "compiled" / _digest()
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = _private_folder() / _digest()
+        folder.mkdir(exist_ok=True)
+    return folder
+
+
+def _private_folder() -> Path:
+    """Return a folder among the temporary files that nobody else can write to.
+
+    Compiled code is loaded from it, so one that another user made or may change is not taken.
+    """
+    if not hasattr(os, "getuid"):
+        return Path(tempfile.mkdtemp(prefix="curvelight-"))  # Windows: already the user's own
+    folder = Path(tempfile.gettempdir()) / f"curvelight-{os.getuid()}"
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = folder.lstat()
+    if found.st_uid != os.getuid() or found.st_mode & 0o022 or not stat.S_ISDIR(found.st_mode):
+        return Path(tempfile.mkdtemp(prefix="curvelight-"))
     return folder
 
 
 _FOLDER = str(cache_folder())
+
+
+def _keep_going(cache: Any) -> None:
+    """Let a result be computed although the disk is full and its code cannot be kept."""
+    save = cache.save_overload
+
+    def attempt(signature: Any, code: Any) -> None:
+        with suppress(OSError):
+            save(signature, code)
+
+    cache.save_overload = attempt
 
 
 def compiled(*, parallel: bool = False) -> Callable[[F], F]:
@@ -92,7 +121,9 @@ def compiled(*, parallel: bool = False) -> Callable[[F], F]:
         try:
             # error_model="numpy": no branch for division by zero, so that loops vectorise.
             jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
-            return jit(function)
+            dispatcher = jit(function)
+            _keep_going(dispatcher._cache)
+            return dispatcher
         finally:
             numba.config.CACHE_DIR = before
 

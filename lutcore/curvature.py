@@ -32,6 +32,9 @@ class PrincipalCurvatures:
         One sigma of k1 and k2, 1/mesh unit; infinite where nothing was estimated.
     scale : float or ndarray, shape=(n,)
         Length over which the surface was averaged, mesh units; 0 for one-ring methods.
+    directed : bool
+        Whether `d1` and `d2` are estimates. If not, they are some frame of the tangent plane:
+        the method tells the values only.
     """
 
     k1: FloatArray
@@ -41,6 +44,7 @@ class PrincipalCurvatures:
     normals: FloatArray
     error: FloatArray
     scale: float | FloatArray
+    directed: bool = True
 
     @cached_property
     def mean(self) -> FloatArray:

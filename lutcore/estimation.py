@@ -75,26 +75,37 @@ def principal_curvatures(
     plugin = create(estimator_registry.get(method), f"curvature estimator {method!r}", parameters)
     if scale is not None:
         scale = float(finite("scale", scale, ()))
-        if scale <= 0.0:
-            raise ParameterError(f"scale = {scale!r} is not a positive length")
+        if not 0.0 < scale <= mesh.diagonal:
+            raise ParameterError(
+                f"scale = {scale!r} is not a length between 0 and the mesh's diagonal, "
+                f"{mesh.diagonal:.6g}"
+            )
     tell(progress, 0.0, "joining vertices")
     welded = weld(mesh)
     if welded.mesh is None:
         return _nothing(len(mesh.vertices))
-    return _spread(welded, plugin.estimate(welded.mesh, scale, progress))
+    # Estimators see a mesh of about unit size, so that no square leaves the range of numbers; a
+    # power of two changes no bits.
+    unit = float(2.0 ** np.round(np.log2(welded.mesh.diagonal)))
+    sized = TriangleMesh.trusted(welded.mesh.vertices / unit, welded.mesh.faces)
+    found = plugin.estimate(sized, None if scale is None else scale / unit, progress)
+    tell(progress, 1.0, "done")
+    return _spread(welded, found, unit)
 
 
-def _spread(welded: Welded, found: PrincipalCurvatures) -> PrincipalCurvatures:
+def _spread(welded: Welded, found: PrincipalCurvatures, unit: float) -> PrincipalCurvatures:
+    """Return the estimate for the input's vertices and in its units."""
     x_axis, y_axis = np.eye(3)[:2]
-    scale = found.scale
+    scale = found.scale * unit
     return PrincipalCurvatures(
-        k1=welded.spread(found.k1, 0.0),
-        k2=welded.spread(found.k2, 0.0),
+        k1=welded.spread(found.k1 / unit, 0.0),
+        k2=welded.spread(found.k2 / unit, 0.0),
         d1=welded.spread(found.d1, x_axis),
         d2=welded.spread(found.d2, y_axis),
         normals=welded.spread(found.normals, 0.0),
-        error=welded.spread(found.error, np.inf),
+        error=welded.spread(found.error / unit, np.inf),
         scale=welded.spread(scale, 0.0) if isinstance(scale, np.ndarray) else scale,
+        directed=found.directed,
     )
 
 

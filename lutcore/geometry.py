@@ -14,6 +14,9 @@ from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.mesh import TriangleMesh
 
+# Each chunk of the counting sort holds a number for every vertex.
+_MOST_CHUNKS = 8
+
 
 class Corners(NamedTuple):
     """The corners at each vertex: those of vertex v are ``corner[start[v]:start[v + 1]]``.
@@ -43,7 +46,9 @@ def vertex_corners(mesh: TriangleMesh) -> Corners:
     Corners
         The corners, grouped by vertex.
     """
-    return Corners(*_vertex_corners(mesh.faces, len(mesh.vertices), numba.get_num_threads()))
+    return Corners(
+        *_vertex_corners(mesh.faces, len(mesh.vertices), min(numba.get_num_threads(), _MOST_CHUNKS))
+    )
 
 
 def face_areas(mesh: TriangleMesh) -> FloatArray:

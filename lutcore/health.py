@@ -54,8 +54,13 @@ class MeshHealth(Connectivity):
             or self.flipped_edges
         )
 
-    def remarks(self) -> list[str]:
+    def remarks(self, mm_per_unit: float = 1.0) -> list[str]:
         """Return what is odd in plain words.
+
+        Parameters
+        ----------
+        mm_per_unit : float
+            Size of a mesh unit, as far as known.
 
         Returns
         -------
@@ -98,15 +103,16 @@ class MeshHealth(Connectivity):
                 "concave)",
             ),
         )
-        return [line for count, line in counted if count] + self._size_remarks()
+        return [line for count, line in counted if count] + self._size_remarks(mm_per_unit)
 
-    def _size_remarks(self) -> list[str]:
+    def _size_remarks(self, mm_per_unit: float) -> list[str]:
         lines = []
-        if not _SMALLEST_MM <= self.diagonal <= _LARGEST_MM:
-            guess = "metres or inches" if self.diagonal < _SMALLEST_MM else "micrometres"
+        diagonal = self.diagonal * mm_per_unit
+        if not _SMALLEST_MM <= diagonal <= _LARGEST_MM:
+            guess = "metres or inches" if diagonal < _SMALLEST_MM else "micrometres"
             lines.append(
-                f"its diagonal is {self.diagonal:.3g}: if that is not millimetres but, say, "
-                f"{guess}, give the millimetres per unit"
+                f"its diagonal is {diagonal:.3g} mm: if its unit is, say, {guess}, give the "
+                "millimetres per unit"
             )
         if self.float32_step > _COARSEST_STEP * self.typical_edge > 0.0:
             lines.append(

@@ -73,12 +73,14 @@ def diffusion(
 
 def _series(scale: float, bound: float, tolerance: float) -> FloatArray:
     """Return the Chebyshev coefficients of (exp(-t x) - 1)/x on 0 <= x <= bound, cut off."""
+    from scipy.fft import dct
+
     time = 0.5 * scale * scale
     size = 32 + 4 * int(np.sqrt(time * bound * 12.0))
     angle = np.pi * (np.arange(size) + 0.5) / size
     x = 0.5 * bound * (1.0 + np.cos(angle))
     values = np.expm1(-time * x) / x
-    coefficients = np.cos(np.outer(np.arange(size), angle)) @ values * (2.0 / size)
+    coefficients = dct(values, type=2) / size
     coefficients[0] *= 0.5
     # Each T_k is at most 1, and L f at most bound times f.
     tail = bound * np.cumsum(np.abs(coefficients[::-1]))[::-1]

@@ -157,6 +157,41 @@ def _exitance(
     return out
 
 
+def arguments(a: ArrayLike, kappa: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Check what a table is asked for.
+
+    Parameters
+    ----------
+    a : array_like
+        N.w, -1 to 1.
+    kappa : array_like
+        |S+ w_t|, 1/mm, 0 or more; broadcast against `a`.
+
+    Returns
+    -------
+    tuple of ndarray
+        Both, broadcast.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not finite or out of range, or the shapes do not broadcast.
+    """
+    cosines, bends = finite("a", a), finite("kappa", kappa)
+    # Normalised vectors may exceed a cosine of one by rounding.
+    if (np.abs(cosines) > 1.0 + 1e-6).any():
+        raise ParameterError(f"a = {a!r} is outside its range -1 to 1")
+    if (bends < 0.0).any():
+        raise ParameterError(f"kappa = {kappa!r} is negative")
+    try:
+        cosines, bends = np.broadcast_arrays(cosines, bends)
+    except ValueError:
+        raise ParameterError(
+            f"a and kappa have shapes {cosines.shape} and {bends.shape} that do not broadcast"
+        ) from None
+    return cosines, bends
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PsiTable:
     """psi of three channels, as values and slopes at knots that are even in t = asinh(u).
@@ -241,18 +276,7 @@ class PsiTable:
         ParameterError
             If a value is not finite or out of range, or the shapes do not broadcast.
         """
-        cosines, bends = finite("a", a), finite("kappa", kappa)
-        # Normalised vectors may exceed a cosine of one by rounding.
-        if (np.abs(cosines) > 1.0 + 1e-6).any():
-            raise ParameterError(f"a = {a!r} is outside its range -1 to 1")
-        if (bends < 0.0).any():
-            raise ParameterError(f"kappa = {kappa!r} is negative")
-        try:
-            cosines, bends = np.broadcast_arrays(cosines, bends)
-        except ValueError:
-            raise ParameterError(
-                f"a and kappa have shapes {cosines.shape} and {bends.shape} that do not broadcast"
-            ) from None
+        cosines, bends = arguments(a, kappa)
         lengths = self.mean_free_path
         flat = _exitance(cosines.ravel(), bends.ravel(), lengths, self.rows, self.inverse_step)
         return (flat * self.total).reshape(*cosines.shape, 3)

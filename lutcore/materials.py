@@ -155,6 +155,6 @@ def material(name: str) -> Material:
     .. [1] H. W. Jensen, S. R. Marschner, M. Levoy and P. Hanrahan, "A Practical Model for
        Subsurface Light Transport", SIGGRAPH 2001, figure 5.
     """
-    if name not in _BY_NAME:
+    if not isinstance(name, str) or name not in _BY_NAME:
         raise ParameterError.unknown("material", name, _BY_NAME)
     return _BY_NAME[name]

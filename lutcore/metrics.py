@@ -29,4 +29,22 @@ def ciede2000(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> FloatArray:
         colour.XYZ_to_Lab(colour.sRGB_to_XYZ(image.astype(np.float64) / 255.0))
         for image in (one, other)
     ]
-    return np.asarray(colour.delta_E(lab[0], lab[1], method="CIE 2000"), dtype=np.float64)
+    return ciede2000_lab(lab[0], lab[1])
+
+
+def ciede2000_lab(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the CIEDE2000 colour difference of CIE L*a*b* colours, element by element.
+
+    Parameters
+    ----------
+    one, other : ndarray, shape=(..., 3)
+        Colours under one white.
+
+    Returns
+    -------
+    ndarray, shape=(...)
+        The differences.
+    """
+    import colour
+
+    return np.asarray(colour.delta_E(one, other, method="CIE 2000"), dtype=np.float64)

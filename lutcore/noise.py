@@ -3,7 +3,7 @@
 import numpy as np
 from numba import prange
 
-from lutcore.arrays import FloatArray, IndexArray
+from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.tensors import tangent_frame
 
@@ -73,6 +73,7 @@ def vertex_noise(
     vertices: FloatArray,
     normals: FloatArray,
     tensors: FloatArray,
+    judge: BoolArray | None = None,
 ) -> float:
     """Return the standard deviation of the vertices along the normal.
 
@@ -86,14 +87,18 @@ def vertex_noise(
         Smoothed unit normals.
     tensors : ndarray, shape=(n, 3)
         Smoothed shape operators in the `tangent_frame` of `normals`.
+    judge : ndarray of bool, shape=(n,), optional
+        Vertices to judge by; all if not given.
 
     Returns
     -------
     float
-        Robust estimate over all vertices, mesh units.
+        Robust estimate over those vertices, mesh units.
     """
     residual = _residual(start, neighbour, vertices, normals, tensors)
     twice = _difference(start, neighbour, residual)
+    if judge is not None:
+        twice = twice[judge]
     return float(np.median(np.abs(twice))) / (_MAD * _TWICE_DIFFERENCED)
 
 
@@ -120,7 +125,7 @@ def _residual(
             total += z + 0.5 * (
                 tensors[i, 0] * x * x + 2.0 * tensors[i, 1] * x * y + tensors[i, 2] * y * y
             )
-        residual[i] = total / (start[i + 1] - start[i])
+        residual[i] = total / max(start[i + 1] - start[i], 1)
     return residual
 
 
@@ -132,5 +137,5 @@ def _difference(start: IndexArray, neighbour: IndexArray, values: FloatArray) ->
         total = 0.0
         for at in range(start[i], start[i + 1]):
             total += values[neighbour[at]]
-        out[i] = values[i] - total / (start[i + 1] - start[i])
+        out[i] = values[i] - total / max(start[i + 1] - start[i], 1)
     return out

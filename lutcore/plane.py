@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from lutcore.arrays import AnyArray, FloatArray, finite
 from lutcore.errors import ParameterError
-from lutcore.lut import PsiTable
+from lutcore.lut import PsiTable, arguments
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,10 +43,15 @@ class PlaneTable:
         -------
         ndarray, shape=(..., 3)
             As `PsiTable.evaluate`, within the error of the samples.
+
+        Raises
+        ------
+        ParameterError
+            If a value is not finite or out of range, or the shapes do not broadcast.
         """
         from scipy.ndimage import map_coordinates
 
-        cosines, bends = np.broadcast_arrays(finite("a", a), finite("kappa", kappa))
+        cosines, bends = arguments(a, kappa)
         rows, columns = self.values.shape[:2]
         x = 0.5 * (cosines.ravel() + 1.0) * (columns - 1)
         out = np.empty((cosines.size, 3))

@@ -26,6 +26,24 @@ def silent(share: float, step: str) -> bool:
     return True
 
 
+def part(progress: Progress, low: float, high: float) -> Progress:
+    """Return the function to which one stage of the work reports 0 to 1.
+
+    Parameters
+    ----------
+    progress : callable
+        The caller's function.
+    low, high : float
+        Shares of the whole work at the stage's beginning and end.
+
+    Returns
+    -------
+    callable
+        Passes the stage's share on as a share of the whole.
+    """
+    return lambda share, step: progress(low + share * (high - low), step)
+
+
 def tell(progress: Progress, share: float, step: str) -> None:
     """Report progress and stop if asked to.
 

@@ -103,6 +103,12 @@ class Registry(Generic[T]):
             importlib.import_module(f"{self._package}.{name.replace('-', '_')}")
             return
         for entry in entry_points(group=self._group, name=name):
-            entry.load()
+            try:
+                entry.load()
+            except Exception as error:  # whatever another package's import may raise
+                raise ParameterError(
+                    f"the package that brings {self.kind} {name!r} cannot be loaded: "
+                    f"{type(error).__name__}: {error}"
+                ) from error
             return
         raise ParameterError.unknown(self.kind, name, self.names())

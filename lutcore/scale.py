@@ -22,6 +22,11 @@ _EVIDENCE, _USUAL = 1.5, 2.0**2.5
 _SHADING = 3.0
 # Vertices that decide on large meshes, in patches wide against the longest scale.
 _PATCH, _PATCHES, _SEEDS = 12_000, 3, 97
+_LEAST_STAR = 3
+_COUNTED = 0.99
+# No scale that shading chooses by itself is longer than this share of the mesh: where light
+# reaches farther than that, no local model holds, and the warning says so.
+_LONGEST = 0.05
 
 
 def shading_scale(mesh: TriangleMesh, glow: float) -> float:
@@ -40,17 +45,19 @@ def shading_scale(mesh: TriangleMesh, glow: float) -> float:
     Returns
     -------
     float
-        The larger of the two lengths, mesh units; just `glow` if no face has an area.
+        The larger of the two lengths, mesh units, the glow counting up to a twentieth of the
+        mesh's diagonal; just `glow` if no face has an area.
     """
     welded = weld(mesh).mesh
     if welded is None:
         return glow
     areas = vertex_areas(welded, vertex_corners(welded))
-    return max(glow, _SHADING * float(np.sqrt(median_vertex_area(areas))))
+    spacing = float(np.sqrt(median_vertex_area(areas)))
+    return max(min(glow, _LONGEST * welded.diagonal), _SHADING * spacing)
 
 
 def best_scale(on: Surface, progress: Progress = silent) -> float:
-    """Return the scale that makes noise^2 + bias^2 of k least, in the median over vertices.
+    """Return the scale that makes noise^2 + bias^2 of k least, over nearly all vertices.
 
     The change of k from one scale to the next holds both: the noise of the finer, of whatever
     kind, and the bias of the coarser. Large meshes are judged by three patches.
@@ -85,6 +92,7 @@ def _costs(part: Surface, smoothed: Smoothed, inner: BoolArray) -> FloatArray:
         part.fields[:, :3],
         smoothed.normals,
         smoothed.tensors[:, 3].copy(),
+        inner,
     )
     rungs = len(smoothed.scales) - 2
     costs = np.empty(rungs - 1)
@@ -94,7 +102,10 @@ def _costs(part: Surface, smoothed: Smoothed, inner: BoolArray) -> FloatArray:
         apart = (coarser - finer)[inner]
         square = 0.5 * (apart[:, 0] ** 2 + apart[:, 2] ** 2) + apart[:, 1] ** 2
         noise = extrapolated_noise(sigma, part.spacing, smoothed.scales[rung + 1])
-        costs[rung - 1] = float(np.median(square)) + noise**2
+        # Nearly all vertices count, so that sharp parts pull the scale down; the last hundredth
+        # are edges that no scale fits.
+        most = np.sort(square)[: max(1, int(_COUNTED * len(square)))]
+        costs[rung - 1] = float(most.mean()) + noise**2
         finer = coarser
     return costs
 
@@ -119,7 +130,8 @@ def _sample(on: Surface) -> tuple[Surface, BoolArray]:
     links = Laplacian(
         start, number[operator.neighbour[slots]], operator.rate[slots], operator.bound
     )
-    return Surface(on.fields[order], links, on.spacing), inner
+    # A patch that is a whole island, cut where another began, may leave stars that tell nothing.
+    return Surface(on.fields[order], links, on.spacing), inner & (np.diff(start) >= _LEAST_STAR)
 
 
 @compiled()

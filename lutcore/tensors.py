@@ -7,6 +7,9 @@ from lutcore.compiled import compiled
 
 Vector = tuple[float, float, float]
 
+# det C over its square trace: below, the pairs lie on a line to rounding.
+_SINGULAR = 1e-28
+
 
 @compiled()
 def tangent_frame(x: float, y: float, z: float) -> tuple[Vector, Vector]:
@@ -48,7 +51,7 @@ def symmetric_fit(
     Returns
     -------
     tuple of float
-        Entries xx, xy, yy of S.
+        Entries xx, xy, yy of S; zero where all dx are parallel, which determines no S.
 
     Notes
     -----
@@ -58,6 +61,8 @@ def symmetric_fit(
     """
     det = cxx * cyy - cxy * cxy
     trace = cxx + cyy
+    if det <= _SINGULAR * trace * trace:
+        return 0.0, 0.0, 0.0
     # adj(C) Q adj(C), with adj(C) = [[cyy, -cxy], [-cxy, cxx]]
     pxx = cyy * bxx - cxy * bxy
     pxy = cyy * bxy - cxy * byy

@@ -79,6 +79,10 @@ def weld(mesh: TriangleMesh) -> Welded:
     else:
         number = np.where(used, np.cumsum(used, dtype=np.int32) - np.int32(1), np.int32(-1))
         index = number[same].astype(np.int32)
+        # A vertex without a face does not become part of a surface by lying on it.
+        unreferenced = np.ones(len(used), np.bool_)
+        unreferenced[mesh.faces.ravel()] = False
+        index[unreferenced] = -1
         points = mesh.vertices[used]
         faces = index[mesh.faces]
     if not good.all():

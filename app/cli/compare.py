@@ -6,7 +6,6 @@
 import argparse
 
 from app.cli import options
-from app.cli.console import answer
 from app.cli.work import Run
 from app.session import Method
 from lutcore.errors import ParameterError
@@ -31,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     )
     options.add_shading(parser, words, with_model=False)
     options.add_curvature(parser, words)
+    options.add_colors(parser)
     options.add_picture(parser)
 
 
@@ -70,5 +70,5 @@ def run(arguments: argparse.Namespace) -> int:
     if made.difference:
         text = ", ".join(f"{key} {value:.3g}" for key, value in made.difference.items())
         text = f"CIEDE2000 of the first two: {text}\nwrote {arguments.output}"
-    answer(arguments, result, text)
+    work.finish(result, text)
     return 0

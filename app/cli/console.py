@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import sys
 import time
 from collections.abc import Sequence
@@ -33,6 +34,7 @@ def note(arguments: argparse.Namespace, text: str) -> None:
         The remark.
     """
     if not arguments.quiet:
+        clear_line()
         print(f"curvelight: {text}", file=sys.stderr)  # noqa: T201
 
 
@@ -48,10 +50,27 @@ def answer(arguments: argparse.Namespace, result: dict[str, object], text: str) 
     text : str
         What a person reads.
     """
+    clear_line()
     if arguments.json:
-        out(json.dumps(result, indent=2, allow_nan=False))
+        out(json.dumps(_sayable(result), indent=2, allow_nan=False))
     elif not arguments.quiet:
         out(text)
+
+
+def _sayable(value: object) -> object:
+    """Replace numbers that JSON cannot say by None."""
+    if isinstance(value, dict):
+        return {key: _sayable(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_sayable(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def clear_line() -> None:
+    """Remove a progress line from the terminal."""
+    if sys.stderr.isatty():
+        sys.stderr.write("\r\033[K")
+        sys.stderr.flush()
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
@@ -106,7 +125,5 @@ class _Line:
         elapsed = time.monotonic() - self._start
         if elapsed > _PATIENCE:
             sys.stderr.write(f"\r\033[K{100.0 * share:3.0f} %  {step}  {elapsed:.0f} s")
-            if step == "drawing":
-                sys.stderr.write("\r\033[K")
             sys.stderr.flush()
         return True

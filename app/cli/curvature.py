@@ -10,9 +10,9 @@ import argparse
 import numpy as np
 
 from app.cli import options
-from app.cli.console import answer, table
+from app.cli.console import note, table
 from app.cli.work import PERCENTILES, Run, percentiles
-from lutcore.curvature import PrincipalCurvatures
+from lutcore.diagnostics import Diagnosis, diagnose
 
 _REPORTED = ("k1", "k2", "mean", "gauss", "curvedness", "shape_index", "error")
 
@@ -57,37 +57,55 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.curvature_arrays(curvatures))
-    statistics = {name: percentiles(getattr(curvatures, name)) for name in _REPORTED}
+    if work.session.scale is not None and not np.any(curvatures.scale):
+        note(arguments, f"{work.session.estimator.name} works on the one-ring: no scale is used")
+    judged = diagnose(work.pipeline.subject(work.session).mesh, curvatures)
+    groups = {"interior": judged.interior, "border": judged.border, "debris": judged.debris}
+    statistics = {
+        group: {name: percentiles(getattr(curvatures, name)[mask]) for name in _REPORTED}
+        for group, mask in groups.items()
+        if mask.any()
+    }
     result = work.summary(warnings) | {
         "method": work.session.estimator.name,
         "scale": float(np.median(curvatures.scale)),
         "unit": "1/mesh unit",
         "not_estimated": int(np.count_nonzero(~curvatures.estimated)),
-        "share_below_error": _below_error(curvatures),
+        "share_below_error": judged.below_error,
+        "gauss_bonnet": {
+            "integral": judged.total_curvature,
+            "angle_defects": judged.angle_defect,
+            "residual": judged.gauss_bonnet_residual,
+        },
+        "counts": {group: int(np.count_nonzero(mask)) for group, mask in groups.items()},
         "percentiles": statistics,
     }
-    answer(arguments, result, _report(result, statistics))
+    work.finish(result, _report(result, judged, statistics))
     return 0
 
 
-def _below_error(curvatures: PrincipalCurvatures) -> float:
-    """Share of vertices where even the larger |k| does not stand out from its error."""
-    largest = np.maximum(np.abs(curvatures.k1), np.abs(curvatures.k2))
-    return float(np.mean(largest < curvatures.error))
-
-
-def _report(result: dict[str, object], statistics: dict[str, dict[str, float | None]]) -> str:
-    heading = ["", *(f"{share} %" for share in PERCENTILES)]
-    rows = [
-        [name, *("-" if value is None else f"{value:.4g}" for value in found.values())]
-        for name, found in statistics.items()
-    ]
+def _report(
+    result: dict[str, object],
+    judged: Diagnosis,
+    statistics: dict[str, dict[str, dict[str, float | None]]],
+) -> str:
+    lines = []
+    for group, found in statistics.items():
+        count = int(np.count_nonzero(getattr(judged, group)))
+        heading = [f"{group} ({count:,})", *(f"{share} %" for share in PERCENTILES)]
+        rows = [
+            [name, *("-" if value is None else f"{value:.4g}" for value in shares.values())]
+            for name, shares in found.items()
+        ]
+        lines += [table([heading, *rows]), ""]
     return "\n".join(
         [
-            table([heading, *rows]),
+            *lines,
             f"in 1/mesh unit, convex positive; {result['method']} at scale "
             f"{result['scale']:.4g} mesh units; {result['not_estimated']} vertices without an "
             "estimate",
+            f"|k| is below its error at {judged.below_error:.1%} of the vertices; Gauss-Bonnet "
+            f"residual {judged.gauss_bonnet_residual:.2%}",
             f"wrote {result['output']}",
         ]
     )

@@ -6,6 +6,7 @@ import platform
 import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from app import gl
 from app.cli.console import answer
@@ -42,8 +43,13 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from lutcore.compiled import cache_folder
 
-    missing = gl.missing_packages()
-    drawing, problem = (None, "OpenGL is not here") if missing else _probe()
+    missing = gl.missing_libraries()
+    drawing: dict[str, Any] = {}
+    problem = "OpenGL is not here"
+    if not missing:
+        drawing, problem = _probe()
+        missing = drawing.pop("missing", [])
+        problem = "no driver answers" if missing else problem
     advice = _advice(missing, problem)
     result: dict[str, object] = {
         "system": platform.platform(),
@@ -51,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         "packages": {name: _version(name) for name in _PACKAGES},
         "cores": _cores(),
         "compiled_code": str(cache_folder()),
-        "drawing": drawing,
+        "drawing": drawing or None,
         "missing_system_packages": missing,
         "problem": problem,
         "advice": advice,
@@ -60,22 +66,23 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if problem else 0
 
 
-def _probe() -> tuple[dict[str, str] | None, str]:
+def _probe() -> tuple[dict[str, Any], str]:
     """Draw in a child process: a broken driver ends that, not us."""
     try:
         child = subprocess.run(
-            [sys.executable, "-m", "app.gl_probe"],
+            # -P: a folder called app where we happen to run is not ours.
+            [sys.executable, "-P", "-m", "app.gl_probe"],
             capture_output=True,
             text=True,
             timeout=_LIMIT_S,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return None, f"drawing did not end within {_LIMIT_S:.0f} s"
+        return {}, f"drawing did not end within {_LIMIT_S:.0f} s"
     if child.returncode:
         last = child.stderr.strip().splitlines()[-1:] or ["no message"]
-        return None, f"drawing ended with code {child.returncode}: {last[0]}"
-    found: dict[str, str] = json.loads(child.stdout.splitlines()[-1])
+        return {}, f"drawing ended with code {child.returncode}: {last[0]}"
+    found: dict[str, Any] = json.loads(child.stdout.splitlines()[-1])
     return found, ""
 
 
@@ -87,7 +94,7 @@ def _advice(missing: list[str], problem: str) -> str:
     return ""
 
 
-def _report(result: dict[str, object], drawing: dict[str, str] | None) -> str:
+def _report(result: dict[str, object], drawing: dict[str, Any]) -> str:
     lines = [f"{result['system']}, Python {result['python']}, {result['cores']} cores"]
     packages = result["packages"]
     if isinstance(packages, dict):

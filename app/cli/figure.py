@@ -7,8 +7,8 @@ Without MESH, the scanned marble face. The right side shows sqrt((k1^2 + k2^2)/2
 import argparse
 
 from app.cli import options
-from app.cli.console import answer
 from app.cli.work import Run
+from app.quantities import QUANTITIES
 
 _SIZE = (1700, 1000)
 
@@ -48,6 +48,11 @@ def run(arguments: argparse.Namespace) -> int:
     work.require(".png")
     warnings = work.warn()
     made = work.draw()
-    result = work.summary(warnings) | {"exposure": made.exposure, "range_per_mm": made.range}
-    answer(arguments, result, f"wrote {arguments.output}")
+    result = work.summary(warnings) | {
+        "quantity": work.session.quantity,
+        "exposure": made.exposure,
+        "range": made.range,
+        "range_unit": QUANTITIES[work.session.quantity].unit,
+    }
+    work.finish(result, f"wrote {arguments.output}")
     return 0

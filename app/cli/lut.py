@@ -21,8 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     """
     parser.add_argument("material", metavar="MATERIAL", help="see curvelight materials")
     parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
-    parser.add_argument("--samples", type=int, default=64, metavar="N", help="knots of psi (64)")
-    parser.add_argument(
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--samples", type=int, default=64, metavar="N", help="knots of psi (64)")
+    size.add_argument(
         "--plane", type=int, metavar="N", help="the paper's 2-D table, N x N, instead of psi"
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")

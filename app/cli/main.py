@@ -91,6 +91,9 @@ def exit_code(error: CurvelightError) -> int:
 
 
 def _fail(message: str, code: int, verbose: bool) -> int:
+    from app.cli.console import clear_line
+
+    clear_line()
     if verbose:
         traceback.print_exc()
     print(f"curvelight: {message}", file=sys.stderr)  # noqa: T201
@@ -114,7 +117,7 @@ def _run(words: list[str]) -> int:
 
 def _command(module: ModuleType, parser: argparse.ArgumentParser, words: list[str]) -> int:
     module.add_arguments(parser, words)
-    parser.add_argument("--verbose", action="store_true", help="show tracebacks and timings")
+    parser.add_argument("--verbose", action="store_true", help="show tracebacks")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     code: int = module.run(parser.parse_args(words))
     return code

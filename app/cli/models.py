@@ -1,9 +1,10 @@
-"""List the shading models, curvature estimators and diffusion profiles with their parameters."""
+"""List the shading models and curvature estimators with their parameters."""
 
 import argparse
 from typing import Any
 
 from app.cli.console import answer
+from lutcore.errors import ParameterError
 from lutcore.parameters import Choice, Number, declared
 from lutcore.registry import Registry
 
@@ -34,11 +35,10 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
-    from lutcore.diffusion import profile_registry
     from lutcore.estimation import estimator_registry
     from lutcore.shading import model_registry
 
-    registries: list[Registry[Any]] = [model_registry, estimator_registry, profile_registry]
+    registries: list[Registry[Any]] = [model_registry, estimator_registry]
     result: dict[str, object] = {}
     lines: list[str] = []
     for registry in registries:
@@ -54,7 +54,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _entry(registry: Registry[Any], name: str) -> dict[str, Any]:
-    plugin = registry.get(name)
+    try:
+        plugin = registry.get(name)
+    except ParameterError as error:
+        # A package of somebody else's that is broken must not hide all others.
+        return {"summary": f"not available: {error}", "parameters": {}}
     return {
         "summary": (plugin.__doc__ or "").strip().splitlines()[0],
         "parameters": {

@@ -25,10 +25,11 @@ def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> None:
     """
     parser.add_argument(
         "mesh",
-        nargs="?" if optional else None,
+        nargs="?",
         metavar="MESH",
-        help="PLY, OBJ, STL, OFF, GLB or VTP file, or sample:NAME",
+        help="PLY, OBJ, STL, OFF, GLB or VTP file, or sample:NAME; may be left out with --session",
     )
+    parser.set_defaults(own_mesh=optional)
     parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
     parser.add_argument("--session", type=Path, metavar="FILE", help="start from a session file")
     parser.add_argument("--save-session", type=Path, metavar="FILE", help="write the session too")
@@ -64,8 +65,17 @@ def add_colors(parser: argparse.ArgumentParser) -> None:
     """
     group = parser.add_argument_group("colours")
     group.add_argument("--quantity", choices=get_args(Quantity), help="what is shown")
-    group.add_argument("--colormap", metavar="NAME", help="green-red, or any of matplotlib's")
+    group.add_argument(
+        "--colormap",
+        metavar="NAME",
+        help="green-red as in the paper (cividis is its twin "
+        "for the colour-blind), or any of matplotlib's",
+    )
     group.add_argument("--range", type=_pair, metavar="LOW,HIGH", help="ends of the colour bar")
+    group.add_argument(
+        "--symmetric", action="store_const", const=True, help="range as wide below 0 as above"
+    )
+    group.add_argument("--flip", action="store_const", const=True, help="turn the map round")
     group.add_argument("--flat", action="store_const", const=True, help="colours without light")
 
 
@@ -153,6 +163,8 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
         If a file or a value is not right.
     """
     given = vars(arguments)
+    if not (given["mesh"] or given["session"] or given["own_mesh"]):
+        raise ParameterError("say which mesh: a file, sample:NAME, or --session FILE")
     start = state.read(given["session"]) if given.get("session") else Session()
     changes = {name: given.get(name) for name in _PLAIN} | fixed
     if given.get("camera"):
@@ -165,10 +177,7 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
         start = _with_scale(start, given["scale"])
     changes["estimator"] = _method(start.estimator, given, "curvature estimator", "method")
     changes["model"] = _method(start.model, given, "shading model", "model")
-    session = state.replaced(start, **changes)
-    if given.get("save_session"):
-        state.write(session, given["save_session"])
-    return session
+    return state.replaced(start, **changes)
 
 
 _PLAIN = (
@@ -180,6 +189,8 @@ _PLAIN = (
     "quantity",
     "colormap",
     "range",
+    "symmetric",
+    "flip",
     "flat",
     "size",
     "background",
@@ -188,10 +199,13 @@ _PLAIN = (
 
 def _chosen(words: list[str], flag: str, field: str) -> str:
     """Name of the plug-in that the arguments choose: its parameters become flags."""
-    scout = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    scout = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     scout.add_argument(flag, dest="name")
     scout.add_argument("--session", type=Path)
-    known, _ = scout.parse_known_args(words)
+    try:
+        known, _ = scout.parse_known_args(words)
+    except argparse.ArgumentError:
+        known = argparse.Namespace(name=None, session=None)  # the command's own parser will say
     if known.name:
         return str(known.name)
     start = state.read(known.session) if known.session else Session()

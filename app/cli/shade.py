@@ -1,13 +1,13 @@
 """Shade a mesh as a translucent material and write a picture, or the values at its vertices.
 
 .png is a picture; .vtp, .ply and .npz hold `shading` (float32, linear radiant exitance) and
-`shading_srgb` (uint8, what a display is sent).
+`shading_srgb` (uint8: the same exposed and sRGB-encoded, without the exit Fresnel factor and the
+vertex colours that a picture adds).
 """
 
 import argparse
 
 from app.cli import options
-from app.cli.console import answer
 from app.cli.work import Run, percentiles
 
 
@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     options.add_mesh(parser)
     options.add_shading(parser, words)
     options.add_curvature(parser, words)
+    options.add_colors(parser)
     options.add_picture(parser)
 
 
@@ -46,11 +47,13 @@ def run(arguments: argparse.Namespace) -> int:
     work = Run(arguments, options.session_from(arguments, view="shade"))
     work.require(".png", ".vtp", ".ply", ".npz")
     warnings = work.warn()
-    exitance = work.exitance()
     exposure = work.session.exposure
     if work.output.suffix.lower() == ".png":
-        exposure = work.draw().exposure
+        made = work.draw()
+        exposure = made.exposure
+        exitance = work.exitance(made.camera)
     else:
+        exitance = work.exitance()
         exposure = exposure or auto_exposure(exitance)
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
@@ -63,5 +66,5 @@ def run(arguments: argparse.Namespace) -> int:
             for channel, name in enumerate(("red", "green", "blue"))
         },
     }
-    answer(arguments, result, f"wrote {arguments.output}")
+    work.finish(result, f"wrote {arguments.output}")
     return 0

@@ -3,16 +3,20 @@
 import argparse
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app import picture
-from app.cli.console import note, progress
+from app import session as state
+from app.cli.console import answer, note, progress
 from app.pipeline import Pipeline
-from app.session import Session
+from app.session import Camera, Session
 from app.writing import check_writable, replacing
 from lutcore.arrays import FloatArray
 from lutcore.errors import ParameterError
+
+if TYPE_CHECKING:
+    from app.picture import Picture
 
 PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
 
@@ -53,7 +57,17 @@ class Run:
         if self.output.suffix.lower() not in suffixes:
             name = self.output.suffix or self.output.name
             raise ParameterError.unknown("output format", name, suffixes)
+        self._refuse_overwriting()
         check_writable(self.output)
+
+    def _refuse_overwriting(self) -> None:
+        """Keep a result from replacing its mesh, and the session from replacing the result."""
+        mesh, saved = Path(self.session.mesh), self.arguments.save_session
+        for place in (self.output, *([saved] if saved else [])):
+            if place.exists() and mesh.is_file() and place.samefile(mesh):
+                raise ParameterError(f"{place} is the mesh itself; choose another name")
+        if saved and saved.resolve() == self.output.resolve():
+            raise ParameterError(f"{saved} is also the output; choose another name for the session")
 
     def warn(self) -> list[str]:
         """Say what is odd about the mesh and return it.
@@ -66,15 +80,26 @@ class Run:
         subject = self.pipeline.subject(self.session)
         if self.arguments.quiet and not self.arguments.json:
             return []  # nobody would read them, and a million faces take most of a second
-        warnings = [*subject.warnings, *subject.loaded.health.remarks()]
+        size = self.pipeline.mm_per_unit(self.session)
+        warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
         if self.session.mm_per_unit is None and subject.sample is None:
             warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
+        if self.session.view != "curvature" and self.pipeline.floored(self.session):
+            warnings.append(
+                f"{self.pipeline.material(self.session).name} absorbs so little that its glow has "
+                "no end; it is shaded with that of the least absorption that has one"
+            )
         for warning in warnings:
             note(self.arguments, f"{self.session.mesh}: {warning}")
         return warnings
 
-    def exitance(self) -> FloatArray:
+    def exitance(self, camera: Camera | None = None) -> FloatArray:
         """Return the radiant exitance that the session's model gives.
+
+        Parameters
+        ----------
+        camera : Camera, optional
+            The one that a picture was taken from, for lights that move with it.
 
         Returns
         -------
@@ -83,10 +108,11 @@ class Run:
         """
         from app.camera import axes, camera_of
 
-        camera = camera_of(self.session.camera, self.pipeline.subject(self.session), 1.0)
+        if camera is None:
+            camera = camera_of(self.session.camera, self.pipeline.subject(self.session), 1.0)
         return self.pipeline.exitance(self.session, self.session.model, axes(camera))
 
-    def draw(self) -> picture.Picture:
+    def draw(self) -> "Picture":
         """Make the session's picture and write it as PNG.
 
         Returns
@@ -96,7 +122,9 @@ class Run:
         """
         from PIL import Image
 
-        made = picture.render(self.session, self.pipeline)
+        from app.picture import render
+
+        made = render(self.session, self.pipeline)
 
         with replacing(self.output) as beside:
             # Level 1 writes five times faster than the default for a tenth more bytes.
@@ -127,6 +155,20 @@ class Run:
             "warnings": warnings,
             "seconds": round(time.perf_counter() - self._start, 3),
         }
+
+    def finish(self, result: dict[str, object], text: str) -> None:
+        """Write the session, if asked to, and print the answer.
+
+        Parameters
+        ----------
+        result : dict
+            What a script reads.
+        text : str
+            What a person reads.
+        """
+        if self.arguments.save_session:
+            state.write(self.session, self.arguments.save_session)
+        answer(self.arguments, result, text)
 
 
 def percentiles(values: FloatArray) -> dict[str, float | None]:

@@ -1,57 +1,33 @@
-"""The child process of `app.loading.guard`: limits itself, reads, hands arrays back."""
+"""What `app.loading.guard` calls in the child process: a reader, its answer as arrays."""
 
 import importlib
-import json
-import sys
-from pathlib import Path
 
 import numpy as np
 
 from app.loading.errors import BadContentError
+from lutcore.arrays import AnyArray
 
 
-def main(module: str, folder: Path, memory: int) -> None:
-    """Read ``content`` in a folder and leave ``answer.json`` and ``arrays.npz`` beside it.
+def read(module: AnyArray, content: AnyArray) -> dict[str, AnyArray]:
+    """Call ``read(content)`` of a module.
 
     Parameters
     ----------
-    module : str
+    module : ndarray of str, shape=()
         The reader's module.
-    folder : Path
-        Where the content lies and the answer goes.
-    memory : int
-        Bytes of address space that may be used, where the system can limit that.
+    content : ndarray of uint8
+        The whole file.
+
+    Returns
+    -------
+    dict of str to ndarray
+        The fields of the `RawSurface`, or the problem and the advice of a `BadContentError`.
     """
-    _limit(memory)
-    answer: dict[str, object]
     try:
-        surface = importlib.import_module(module).read((folder / "content").read_bytes())
-        arrays = {name: getattr(surface, name) for name in ("vertices", "corners", "counts")}
-        if surface.colors is not None:
-            arrays["colors"] = surface.colors
-        np.savez(folder / "arrays.npz", **arrays)
-        answer = {"warnings": surface.warnings}
+        surface = importlib.import_module(str(module)).read(content.tobytes())
     except BadContentError as error:
-        answer = {"problem": error.problem, "advice": error.advice}
-    except MemoryError:
-        answer = {
-            "problem": f"reading it takes more than {memory >> 30} GiB of memory",
-            "advice": "check that it is not damaged, or decimate the mesh",
-        }
-    (folder / "answer.json").write_text(json.dumps(answer))
-
-
-def _limit(memory: int) -> None:
-    try:
-        import resource
-    except ImportError:  # Windows has no such limits
-        return
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    if hard != resource.RLIM_INFINITY:
-        memory = min(memory, hard)
-    resource.setrlimit(resource.RLIMIT_AS, (memory, hard))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]), int(sys.argv[3]))
+        return {"problem": np.array(error.problem), "advice": np.array(error.advice)}
+    found = {name: getattr(surface, name) for name in ("vertices", "corners", "counts")}
+    if surface.colors is not None:
+        found["colors"] = surface.colors
+    return {**found, "warnings": np.array(surface.warnings, dtype=np.str_)}

@@ -13,14 +13,19 @@ import numpy as np
 from app.loading.colors import normalized
 from app.loading.errors import BadContentError
 from app.loading.gltf_arrays import Arrays
-from app.loading.gltf_scene import placed_meshes
+from app.loading.gltf_scene import placed_primitives
 from app.loading.strips import fan_faces, strip_faces
 from app.loading.surface import RawSurface
 from lutcore.arrays import AnyArray, FloatArray
 from lutcore.color import srgb_encode
 
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_TRIANGLES = 4
+_MODES = (_TRIANGLES, 5, 6)
+# A few kilobytes may place one mesh again and again: as much memory as a million vertices and twice
+# as many faces take is always granted, and beyond that this many bytes for each of the file.
+_GRANTED, _GROWTH = 72_000_000, 64
+_VERTEX_BYTES, _CORNER_BYTES = 24, 8
 _COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 
 
@@ -46,7 +51,7 @@ def read(content: bytes) -> RawSurface:
     """
     document, binary = _chunks(content)
     try:
-        return _surface(document, Arrays(document, binary))
+        return _surface(document, Arrays(document, binary), len(content))
     except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
         # The JSON may hold anything anywhere; what does not fit shows as one of these.
         raise BadContentError(f"its JSON is not valid glTF ({error!r})") from error
@@ -78,7 +83,7 @@ def _chunks(content: bytes) -> tuple[dict[str, Any], bytes]:
     return document, chunks.get(_BIN, b"")
 
 
-def _surface(document: dict[str, Any], arrays: Arrays) -> RawSurface:
+def _surface(document: dict[str, Any], arrays: Arrays, size: int) -> RawSurface:
     for name in document.get("extensionsRequired", []):
         if name in _COMPRESSIONS:
             raise BadContentError(f"it is compressed ({name})", "export it uncompressed")
@@ -86,28 +91,43 @@ def _surface(document: dict[str, Any], arrays: Arrays) -> RawSurface:
     faces: list[AnyArray] = [np.empty((0, 3), np.int64)]
     colors: list[FloatArray | None] = []
     warnings: list[str] = []
-    skipped = 0
     offset = 0
-    for mesh, matrix in placed_meshes(document):
-        for primitive in document["meshes"][mesh]["primitives"]:
-            if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
-                skipped += 1
-                continue
-            points = _positions(arrays, primitive)
-            found = _faces(arrays, primitive, len(points))
-            if np.linalg.det(matrix[:3, :3]) < 0.0:
-                # A mirrored node turns its faces inside out (glTF 2.0, section 3.7.4).
-                found = found[:, ::-1]
-            vertices.append(points @ matrix[:3, :3].T + matrix[:3, 3])
-            faces.append(found + offset)
-            colors.append(_colors(arrays, primitive, len(points), warnings))
-            offset += len(points)
+    placed = placed_primitives(document)
+    drawn = [each for each in placed if each[0].get("mode", _TRIANGLES) in _MODES]
+    skipped = len(placed) - len(drawn)
+    _check_size(arrays, [primitive for primitive, _ in drawn], size)
+    for primitive, matrix in drawn:
+        points = _positions(arrays, primitive)
+        found = _faces(arrays, primitive, len(points))
+        if np.linalg.det(matrix[:3, :3]) < 0.0:
+            # A mirrored node turns its faces inside out (glTF 2.0, section 3.7.4).
+            found = found[:, ::-1]
+        vertices.append(points @ matrix[:3, :3].T + matrix[:3, 3])
+        faces.append(found + offset)
+        colors.append(_colors(arrays, primitive, len(points), warnings))
+        offset += len(points)
     if skipped:
         warnings.append(f"{skipped} parts made of points or lines are left out")
     surface = RawSurface.of_triangles(np.concatenate(vertices), np.concatenate(faces))
     surface.colors = _joined(colors, vertices[1:], warnings)
-    surface.warnings = warnings
+    # A part that is placed twice is complained of twice.
+    surface.warnings = list(dict.fromkeys(warnings))
     return surface
+
+
+def _check_size(arrays: Arrays, primitives: list[dict[str, Any]], size: int) -> None:
+    """Refuse a scene too large for its file, before any of it is expanded."""
+    vertices = corners = 0
+    for primitive in primitives:
+        count = arrays.count(primitive["attributes"]["POSITION"])
+        vertices += count
+        corners += arrays.count(primitive["indices"]) if "indices" in primitive else count
+    if _VERTEX_BYTES * vertices + _CORNER_BYTES * corners > _GRANTED + _GROWTH * size:
+        raise BadContentError(
+            f"its scene has {vertices} vertices and {corners} face corners, out of a file of "
+            f"{size} bytes",
+            "check that it is not damaged, or export fewer copies of its meshes",
+        )
 
 
 def _positions(arrays: Arrays, primitive: dict[str, Any]) -> FloatArray:
@@ -152,7 +172,8 @@ def _colors(
     if len(stored) != count or stored.shape[1] not in (3, 4):
         warnings.append("a part's colours do not fit its vertices: not used")
         return None
-    linear = normalized(stored, warnings)
+    # Floats are 0 to 1 (glTF 2.0, section 3.7.2.1).
+    linear = normalized(stored, warnings, floats_are_shares=True)
     return None if linear is None else srgb_encode(linear)
 
 

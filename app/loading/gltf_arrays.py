@@ -26,6 +26,26 @@ class Arrays:
         self._document = document
         self._binary = binary
 
+    def count(self, index: int) -> int:
+        """Return the number of an accessor's values as it is declared, without looking at them.
+
+        Parameters
+        ----------
+        index : int
+            Its number.
+
+        Returns
+        -------
+        int
+            The length of what `get` returns, if the data are there.
+
+        Raises
+        ------
+        BadContentError
+            If there is no such accessor.
+        """
+        return _natural(_item(self._document, "accessors", index), "count")
+
     def get(self, index: int) -> AnyArray:
         """Return one accessor's values.
 

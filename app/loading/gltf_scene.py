@@ -12,26 +12,36 @@ from lutcore.arrays import FloatArray
 _MOST_PLACES = 100_000
 
 
-def placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, FloatArray]]:
-    """Walk the default scene, parents before children.
+def placed_primitives(document: dict[str, Any]) -> list[tuple[dict[str, Any], FloatArray]]:
+    """List the primitives of the default scene's meshes, each as often as it is placed.
 
     Parameters
     ----------
     document : dict
         The file's JSON.
 
-    Yields
-    ------
-    int
-        A mesh's number.
-    ndarray, shape=(4, 4)
-        Its transform to world coordinates.
+    Returns
+    -------
+    list of (dict, ndarray, shape=(4, 4))
+        The primitives' JSON and their transforms to world coordinates, parents before children.
 
     Raises
     ------
     BadContentError
-        If a node is its own ancestor or is placed too often.
+        If a node is its own ancestor, or more is placed than any scene has.
     """
+    placed: list[tuple[dict[str, Any], FloatArray]] = []
+    for mesh, matrix in _placed_meshes(document):
+        primitives = document["meshes"][mesh]["primitives"]
+        if len(placed) + len(primitives) > _MOST_PLACES:
+            raise BadContentError(
+                f"its scene places more than {_MOST_PLACES} parts", "join its parts to one mesh"
+            )
+        placed += [(primitive, matrix) for primitive in primitives]
+    return placed
+
+
+def _placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, FloatArray]]:
     nodes = document.get("nodes", [])
     waiting = [(root, np.eye(4)) for root in reversed(_roots(document, nodes))]
     places = 0

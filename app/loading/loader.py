@@ -1,5 +1,6 @@
 """The one way from a file's name to a checked mesh."""
 
+import codecs
 import hashlib
 import importlib
 import os
@@ -75,6 +76,8 @@ def load_mesh(path: str | os.PathLike[str]) -> LoadedMesh:
     path = Path(path)
     try:
         content = _content(path)
+        digest = hashlib.sha256(content).hexdigest()
+        content = _without_mark(content)
         suffix = path.suffix[1:].lower()
         found = sniff(content, suffix)
         # Absurd numbers overflow before they are found out: that is said by an error, not by a
@@ -94,13 +97,21 @@ def load_mesh(path: str | os.PathLike[str]) -> LoadedMesh:
     if suffix != found:
         called = f"is called .{suffix}" if suffix in FORMATS else "has an unknown ending"
         warnings.insert(0, f"the file {called} but holds {found.upper()}: read as {found.upper()}")
-    return LoadedMesh(mesh, colors, tuple(warnings), path, hashlib.sha256(content).hexdigest())
+    return LoadedMesh(mesh, colors, tuple(warnings), path, digest)
 
 
 def _reader(name: str) -> Callable[[bytes], RawSurface]:
     # Imported by name, so that a reader costs nothing until a file needs it.
     read: Callable[[bytes], RawSurface] = importlib.import_module(f"app.loading.{name}").read
     return read
+
+
+def _without_mark(content: bytes) -> bytes:
+    # Before a text; in the free header of a binary STL, which a zero byte gives away (its count of
+    # triangles has one), the same bytes are content.
+    if b"\0" in content[:84]:
+        return content
+    return content.removeprefix(codecs.BOM_UTF8)
 
 
 def _content(path: Path) -> bytes:

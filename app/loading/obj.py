@@ -38,15 +38,19 @@ def read(content: bytes) -> RawSurface:
     BadContentError
         If a line cannot be understood.
     """
-    content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\\\n", b" ")
+    lines = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    # As long as before, so that a place in the one is the same place in the other.
+    joined = lines.replace(b"\\\n", b"  ")
     warnings: list[str] = []
-    note_open_end(content, warnings)
-    vertices, colors = _vertices(content, warnings)
-    corners, counts = _faces(content, len(vertices))
+    note_open_end(lines, warnings)
+    vertices, colors = _vertices(joined, lines, warnings)
+    corners, counts = _faces(joined, len(vertices))
     return RawSurface(vertices, corners, counts, colors, warnings)
 
 
-def _vertices(content: bytes, warnings: list[str]) -> tuple[FloatArray, FloatArray | None]:
+def _vertices(
+    content: bytes, unjoined: bytes, warnings: list[str]
+) -> tuple[FloatArray, FloatArray | None]:
     lines = _VERTEX.findall(content)
     if not lines:
         raise BadContentError("it has no vertex lines 'v x y z'", "check that it is an OBJ file")
@@ -54,7 +58,7 @@ def _vertices(content: bytes, warnings: list[str]) -> tuple[FloatArray, FloatArr
     if min(widths) < 3:
         wrong = next(m for m in _VERTEX.finditer(content) if len(m.group(1).split()) < 3)
         raise BadContentError(
-            f"line {line_of(content, wrong.start())}: a vertex with fewer than three coordinates"
+            f"line {line_of(unjoined, wrong.start())}: a vertex with fewer than three coordinates"
         )
     if len(widths) > 1:
         if max(widths) >= _WITH_COLOR:
@@ -62,12 +66,12 @@ def _vertices(content: bytes, warnings: list[str]) -> tuple[FloatArray, FloatArr
         lines = [b" ".join(line.split()[:3]) for line in lines]
         widths = {3}
     (width,) = widths
-    table = _table(content, lines).reshape(-1, width)
+    table = _table(content, unjoined, lines).reshape(-1, width)
     colors = normalized(table[:, 3:], warnings) if width >= _WITH_COLOR else None
     return np.ascontiguousarray(table[:, :3]), colors
 
 
-def _table(content: bytes, lines: list[bytes]) -> FloatArray:
+def _table(content: bytes, unjoined: bytes, lines: list[bytes]) -> FloatArray:
     try:
         return numbers(b"\n".join(lines), first_line=None)
     except BadContentError as error:
@@ -75,7 +79,7 @@ def _table(content: bytes, lines: list[bytes]) -> FloatArray:
             try:
                 numbers(match.group(1), first_line=None)
             except BadContentError as here:
-                line = line_of(content, match.start())
+                line = line_of(unjoined, match.start())
                 raise BadContentError(f"line {line}: {here.problem}") from None
         raise error
 

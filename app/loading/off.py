@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from app.loading.colors import normalized
+from app.loading.colors import FACE_COLORS_UNUSED, normalized
 from app.loading.errors import BadContentError
 from app.loading.surface import RawSurface
 from app.loading.text import note_open_end, numbers, whole
@@ -50,7 +50,7 @@ def read(content: bytes) -> RawSurface:
     note_open_end(content, warnings)
     vertices, colors = _vertices(lines[1 : 1 + vertex_count], keyword, warnings)
     rows = lines[1 + vertex_count : 1 + vertex_count + face_count]
-    corners, counts = _faces(rows)
+    corners, counts = _faces(rows, warnings)
     return RawSurface(vertices, corners, counts, colors, warnings)
 
 
@@ -93,7 +93,7 @@ def _vertices(
     return np.ascontiguousarray(table[:, :3]), colors
 
 
-def _faces(lines: list[bytes]) -> tuple[AnyArray, AnyArray]:
+def _faces(lines: list[bytes], warnings: list[str]) -> tuple[AnyArray, AnyArray]:
     widths = np.fromiter(map(len, map(bytes.split, lines)), np.int64)
     table = numbers(b"\n".join(lines), first_line=None)
     starts = np.cumsum(widths) - widths
@@ -105,6 +105,8 @@ def _faces(lines: list[bytes]) -> tuple[AnyArray, AnyArray]:
             f"face {face} (from 0) has {widths[face] - 1} numbers, expected {counts[face]} corners"
         )
     # What follows the corners of a face is its colour.
+    if (widths > counts + 1).any():
+        warnings.append(FACE_COLORS_UNUSED)
     inside = np.arange(len(table)) - np.repeat(starts, widths)
     corner = (inside >= 1) & (inside <= np.repeat(counts, widths))
     return whole(table[corner], "face indices"), counts

@@ -7,7 +7,7 @@ and cannot say where a file is wrong; VTK's reader dies of most files cut short.
 import numpy as np
 
 from app.loading import ply_binary, ply_header, ply_text
-from app.loading.colors import normalized
+from app.loading.colors import FACE_COLORS_UNUSED, normalized
 from app.loading.errors import BadContentError
 from app.loading.ply_table import Table
 from app.loading.strips import strip_faces
@@ -56,6 +56,8 @@ def read(content: bytes) -> RawSurface:
         raise MeshError("it holds no vertices with x, y and z")
     vertices = np.column_stack([points[name] for name in "xyz"]).astype(np.float64)
     corners, counts = _polygons(tables, warnings)
+    if _color_names(tables.get("face", Table()).columns):
+        warnings.append(FACE_COLORS_UNUSED)
     return RawSurface(vertices, corners, counts, _colors(points, warnings), warnings)
 
 
@@ -81,7 +83,11 @@ def _indices(corners: AnyArray) -> AnyArray:
 
 
 def _colors(points: dict[str, AnyArray], warnings: list[str]) -> FloatArray | None:
-    for names in _COLOR_NAMES:
-        if points.keys() >= set(names):
-            return normalized(np.column_stack([points[name] for name in names]), warnings)
-    return None
+    names = _color_names(points)
+    if names is None:
+        return None
+    return normalized(np.column_stack([points[name] for name in names]), warnings)
+
+
+def _color_names(columns: dict[str, AnyArray]) -> tuple[str, str, str] | None:
+    return next((names for names in _COLOR_NAMES if columns.keys() >= set(names)), None)

@@ -1,5 +1,6 @@
 """The header of a PLY file, and whether the file can be as large as it says."""
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,11 @@ from app.loading.errors import BadContentError
 
 # "element vertex 10" promises ten lines; no header needs more than this.
 _LONGEST_HEADER = 1 << 20
+# Gaussian splats, the widest tables about, have 62; each one costs an array.
+_MOST_PROPERTIES = 1000
+# A line of its own, for comments may hold the word. The first data byte follows exactly one line
+# end, which may be CR LF.
+_END = re.compile(rb"(?<![^\r\n])[ \t]*end_header[ \t]*(?:\r\n|\r|\n|\Z)")
 _TYPES = {
     "char": "i1",
     "uchar": "u1",
@@ -115,49 +121,58 @@ def parse(content: bytes) -> Header:
     BadContentError
         If it cannot be understood, or promises more than the file can hold.
     """
-    end = content.find(b"end_header", 0, _LONGEST_HEADER)
-    if end < 0:
+    end = _END.search(content, 0, _LONGEST_HEADER)
+    if end is None:
         raise BadContentError("its header has no line 'end_header'")
-    text = content[:end].decode("latin-1")
+    text = content[: end.start()].decode("latin-1")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    body = end + len("end_header")
-    # The first data byte follows exactly one line end, which may be CR LF; blanks may precede it.
-    while content[body : body + 1] in (b" ", b"\t"):
-        body += 1
-    body += 2 if content[body : body + 2] == b"\r\n" else 1
     order, elements = _elements(lines)
-    header = Header(order == "", elements, min(body, len(content)), len(lines))
+    header = Header(order == "", elements, end.end(), len(lines))
     _check_size(header, len(content) - header.body)
     return header
 
 
 def _elements(lines: list[str]) -> tuple[str, tuple[Element, ...]]:
     order: str | None = None
-    elements: list[Element] = []
+    counts: dict[str, int] = {}
+    columns: dict[str, dict[str, Property]] = {}
+    last: dict[str, Property] = {}
     for number, line in enumerate(lines, start=1):
         try:
             match line.split():
-                case ["format", encoding, _]:
+                case ["format", encoding, _] if order is None:
                     order = _ORDERS[encoding]
-                case ["element", name, rows] if int(rows) >= 0:
-                    elements.append(Element(name, int(rows), ()))
-                case ["property", *words]:
-                    last = elements.pop()
-                    added = _property(words, order or "")
-                    if added.name in {each.name for each in last.properties}:
-                        raise ValueError
-                    elements.append(Element(last.name, last.rows, (*last.properties, added)))
-                case ["format" | "element", *_]:
+                case ["element" | "property", *_] if order is None:
+                    raise _refusal(number, line, ", before the line 'format'")
+                case ["element", name, _] if name in counts:
+                    raise _refusal(number, line, ", and that element is there already")
+                case ["element", name, count] if int(count) >= 0:
+                    counts[name] = int(count)
+                    last = columns[name] = {}
+                case ["property", *words] if order is not None and counts:
+                    added = _property(words, order)
+                    if added.name in last:
+                        raise _refusal(number, line, ", and that property is there already")
+                    if len(last) == _MOST_PROPERTIES:
+                        raise _refusal(number, line, f", after {_MOST_PROPERTIES} others")
+                    last[added.name] = added
+                case ["format" | "element" | "property", *_]:
                     raise ValueError
                 case _:
                     # Comments, obj_info, and whatever else a writer adds.
                     continue
-        except (KeyError, ValueError, IndexError):
-            shown = line[:60].encode("ascii", "backslashreplace").decode()
-            raise BadContentError(f"line {number} of its header is {shown!r}") from None
+        except (KeyError, ValueError):
+            raise _refusal(number, line) from None
     if order is None:
         raise BadContentError("its header does not name a format")
-    return order, tuple(elements)
+    return order, tuple(
+        Element(name, count, tuple(columns[name].values())) for name, count in counts.items()
+    )
+
+
+def _refusal(number: int, line: str, why: str = "") -> BadContentError:
+    shown = line[:60].encode("ascii", "backslashreplace").decode()
+    return BadContentError(f"line {number} of its header is {shown!r}{why}")
 
 
 def _property(words: list[str], order: str) -> Property:

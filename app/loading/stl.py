@@ -9,6 +9,7 @@ import struct
 
 import numpy as np
 
+from app.loading.colors import FACE_COLORS_UNUSED
 from app.loading.errors import BadContentError
 from app.loading.surface import RawSurface
 from app.loading.text import line_of, numbers
@@ -17,6 +18,9 @@ _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _VERTEX = re.compile(rb"\bvertex\b([^\n]*)", re.IGNORECASE)
 _TEXT = re.compile(rb"\s*solid\b.*?(?:facet|endsolid)\b", re.IGNORECASE | re.DOTALL)
+# VisCAM marks a triangle's colour by this bit of its attribute, Materialise by this word in the
+# header.
+_HAS_COLOR, _COLOR_WORD = 0x8000, b"COLOR="
 _FACET = re.compile(rb"(?<!end)facet\b", re.IGNORECASE)
 _SOLID = re.compile(rb"^[ \t]*(end ?)?solid\b", re.IGNORECASE | re.MULTILINE)
 
@@ -59,6 +63,8 @@ def _read_binary(content: bytes) -> RawSurface:
     surface = RawSurface.of_triangles(vertices, np.arange(3 * count).reshape(-1, 3))
     if len(content) > expected:
         surface.warnings.append(f"{len(content) - expected} bytes after the last triangle ignored")
+    if (records["attribute"] & _HAS_COLOR).any() or _COLOR_WORD in content[:80]:
+        surface.warnings.append(FACE_COLORS_UNUSED)
     return surface
 
 

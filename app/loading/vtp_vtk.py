@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from app.loading.colors import normalized
+from app.loading.colors import FACE_COLORS_UNUSED, normalized
 from app.loading.errors import BadContentError
 from app.loading.strips import strip_faces
 from app.loading.surface import RawSurface
@@ -56,6 +56,8 @@ def read(content: bytes) -> RawSurface:
         warnings.append(f"{len(faces)} triangles come from triangle strips")
         corners = np.concatenate((corners, faces.reshape(-1)))
         counts = np.concatenate((counts, np.full(len(faces), 3)))
+    if _color_array(data.GetCellData()) is not None:
+        warnings.append(FACE_COLORS_UNUSED)
     return RawSurface(vertices, corners, counts, _colors(data.GetPointData(), warnings), warnings)
 
 
@@ -84,10 +86,15 @@ def _cells(cells: Any) -> tuple[AnyArray, AnyArray]:
 def _colors(attributes: Any, warnings: list[str]) -> FloatArray | None:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    array = _color_array(attributes)
+    return None if array is None else normalized(vtk_to_numpy(array), warnings)
+
+
+def _color_array(attributes: Any) -> Any:
     for index in range(attributes.GetNumberOfArrays()):
         array = attributes.GetArray(index)
         if array is None or (array.GetName() or "").lower() not in _COLOR_NAMES:
             continue
         if array.GetNumberOfComponents() in (3, 4):
-            return normalized(vtk_to_numpy(array), warnings)
+            return array
     return None

@@ -8,7 +8,7 @@ from lutcore.cosmoothing import smooth, surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.mesh import TriangleMesh
-from lutcore.progress import Progress, tell
+from lutcore.progress import Progress, part, tell
 from lutcore.selection import select
 
 # Without a scale: enough to hide 1 % noise, little enough to keep features of ten edges.
@@ -34,4 +34,6 @@ class CoSmoothing(EstimatorParameters):
         on = surface(mesh)
         length = _DEFAULT_SPACINGS * on.spacing if scale is None else scale
         ladder = length * np.sqrt(2.0) ** np.array([-1.0, 0.0, 1.0])
-        return select(on, smooth(on, ladder.tolist(), base=1, progress=progress))
+        smoothed = smooth(on, ladder.tolist(), base=1, progress=part(progress, 0.1, 0.9))
+        tell(progress, 0.9, "fitting")
+        return select(on, smoothed)

@@ -64,7 +64,8 @@ def test_figure_shows_skin_left_and_curvature_right(out, capsys):
     red = ((right[..., 0] > right[..., 1] + 60) & (right[..., 0] > 120)).mean()
     assert green > 0.1
     assert red > 0.01
-    low, high = result["range_per_mm"]
+    low, high = result["range"]
+    assert result["range_unit"] == "1/mm"
     assert 0.0 <= low < high < 1.0
 
 
@@ -93,7 +94,7 @@ def test_curvature_writes_pictures_and_data(tmp_path, suffix, capsys):
     assert main(["curvature", "sample:sphere", "-o", str(path), "--json", *FAST]) == 0
     result, _ = object_of(capsys)
     assert path.exists()
-    assert result["percentiles"]["mean"]["p50"] == pytest.approx(0.1, rel=0.01)
+    assert result["percentiles"]["interior"]["mean"]["p50"] == pytest.approx(0.1, rel=0.01)
     assert result["not_estimated"] == 0
 
 
@@ -181,7 +182,7 @@ def test_doctor_says_what_draws(capsys):
 def test_doctor_names_what_is_missing_without_drawing(capsys, monkeypatch):
     from app import gl
 
-    monkeypatch.setattr(gl, "missing_packages", lambda: ["libegl1"])
+    monkeypatch.setattr(gl, "missing_libraries", lambda: ["libegl1"])
     assert main(["doctor"]) == 1
     assert "apt-get install libegl1" in capsys.readouterr().out
 
@@ -322,3 +323,110 @@ def test_a_reader_that_leaves_early_is_no_fault():
     writer.stdout.close()
     _, errors = writer.communicate()
     assert writer.returncode == 0, errors
+
+
+def test_a_session_saved_elsewhere_finds_its_mesh_again_and_needs_no_mesh(
+    tmp_path, monkeypatch, capsys
+):
+    (tmp_path / "scans").mkdir()
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scans" / "m.off").write_text("OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 2\n")
+    first = ["shade", "scans/m.off", "-o", "1.png", "--save-session", "out/s.json", *SMALL, *FAST]
+    assert main(first) == 0
+    monkeypatch.chdir(tmp_path / "scans")
+    assert main(["shade", "--session", "../out/s.json", "-o", "../2.png"]) == 0
+    assert (tmp_path / "1.png").read_bytes() == (tmp_path / "2.png").read_bytes()
+
+
+def test_a_result_never_replaces_its_mesh_nor_the_session_the_result(tmp_path, capsys):
+    path = tmp_path / "m.ply"
+    assert main(["curvature", "sample:torus", "-o", str(path), "--quiet", *FAST]) == 0
+    before = path.read_bytes()
+    assert main(["curvature", str(path), "-o", str(path), *FAST]) == 2
+    assert "is the mesh itself" in capsys.readouterr().err
+    other = str(tmp_path / "x.npz")
+    assert main(["curvature", str(path), "-o", other, "--save-session", str(path), *FAST]) == 2
+    assert main(["curvature", str(path), "-o", other, "--save-session", other, *FAST]) == 2
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["x.png", "x.exr", "x.npz"])
+def test_a_full_disk_is_told_of_by_every_table_format(name, tmp_path):
+    pytest.importorskip("resource")
+    out = tmp_path / name
+    out.write_bytes(b"old")
+    assert _limited(["lut", "skin1", "-o", str(out), "--plane", "64"], tmp_path) == 1
+    assert out.read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("name", ["x.png", "x.vtp", "x.csv", "x.npz"])
+def test_a_full_disk_is_told_of_by_every_data_format(name, tmp_path):
+    pytest.importorskip("resource")
+    out = tmp_path / name
+    out.write_bytes(b"old")
+    arguments = ["curvature", "sample:torus", "-o", str(out), *FAST, "--size", "900x900"]
+    assert _limited(arguments, tmp_path) == 1
+    assert out.read_bytes() == b"old"
+
+
+def _limited(arguments, folder):
+    """Run in a process that may write no file above 4 kB, and look for leavings."""
+    code = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "from app.cli.main import main;"
+        "import lutcore.estimation, lutcore.diagnostics, lutcore.baking, app.picture;"
+        "import plugins.curvature.rusinkiewicz2004;"
+        f"main(['curvature', 'sample:torus', '-o', {str(folder / 'w.npz')!r}, *{FAST!r}]);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096));"
+        f"sys.exit(main({arguments!r}))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "cannot be written" in done.stderr
+    assert len(list(folder.iterdir())) == 2
+    return done.returncode
+
+
+def test_a_mesh_without_any_area_exits_4(tmp_path, capsys):
+    path = tmp_path / "line.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+    assert main(["curvature", str(path), "-o", str(tmp_path / "x.png")]) == 4
+    assert "none of its 1 faces has an area" in capsys.readouterr().err
+
+
+def test_a_mesh_in_metres_is_shaded_and_warned_of(tmp_path, capsys):
+    from lutcore.analytic import sphere
+    from sample_meshes.ply import write_ply
+
+    ball = sphere(2000, radius=0.01).mesh
+    write_ply(tmp_path / "m.ply", ball.vertices, ball.faces)
+    out = str(tmp_path / "x.png")
+    assert main(["shade", str(tmp_path / "m.ply"), "-o", out, *SMALL]) == 0
+    assert "metres" in capsys.readouterr().err
+    known = ["--mm-per-unit", "1000"]
+    assert main(["shade", str(tmp_path / "m.ply"), "-o", out, *SMALL, *known]) == 0
+    assert "metres" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ["--exposure", "inf"],
+        ["--range", "0,inf"],
+        ["--mm-per-unit", "nan"],
+        ["--camera", "0,0,0,0,0,0,0,0,1"],
+        ["--scale", "1e300"],
+        ["--size", "80x1000"],
+    ],
+)
+def test_numbers_that_make_no_picture_exit_2(flags, out, capsys):
+    arguments = ["figure", "sample:torus", "-o", str(out), "--method", "co-smoothing", *flags]
+    assert main(arguments) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not out.exists()
+
+
+def test_spectralon_is_said_to_have_no_absorption(out, capsys):
+    arguments = ["shade", "sample:torus", "-o", str(out), "--material", "spectralon", *SMALL]
+    assert main([*arguments, *FAST]) == 0
+    assert "absorbs so little" in capsys.readouterr().err

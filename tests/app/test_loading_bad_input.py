@@ -201,6 +201,18 @@ def test_the_place_of_the_damage_is_named(tmp_path, name, content, place):
     assert place in unreadable(tmp_path, name, content)
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize(("row", "words"), [("v 0 1", "a vertex with fewer"), ("v 0 x 1", "'x'")])
+def test_lines_of_an_obj_are_counted_across_continued_ones(tmp_path, end, row, words):
+    text = f"v 0 0 \\\n0\n# a \\\ncomment\nv 1 \\\n0 \\\n0\n{row}\n".replace("\n", end)
+    assert f"line 8: {words}" in unreadable(tmp_path, "a.obj", text)
+
+
+@pytest.mark.parametrize("ending", ["ply", "obj", "stl", "off", "glb", "vtp", "txt"])
+def test_a_byte_order_mark_alone(tmp_path, ending):
+    unreadable(tmp_path, f"a.{ending}", b"\xef\xbb\xbf")
+
+
 @pytest.mark.parametrize(
     ("name", "content"),
     [

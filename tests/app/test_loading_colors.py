@@ -31,6 +31,27 @@ def test_numbers_that_are_no_colours_are_dropped_aloud(bad):
     assert "not used" in warnings[0]
 
 
+@pytest.mark.parametrize("above", [1.00001, 1.5, 2.0])
+def test_shares_a_little_above_one_are_clipped_aloud_and_not_taken_for_bytes(above):
+    warnings = []
+    colors = normalized(np.array([[0.0, 0.5, above], [0.25, 1.0, 0.0]]), warnings)
+    assert colors.tolist() == [[0.0, 0.5, 1.0], [0.25, 1.0, 0.0]]
+    assert warnings == ["some vertex colours are not between 0 and 1: clipped"]
+
+
+@pytest.mark.parametrize(("beyond", "clipped"), [(40.0, 1.0), (300.0, 1.0), (-0.25, 0.0)])
+def test_shares_by_definition_are_clipped_however_large(beyond, clipped):
+    warnings = []
+    colors = normalized(np.array([[0.0, 0.5, beyond]]), warnings, floats_are_shares=True)
+    assert colors.tolist() == [[0.0, 0.5, clipped]]
+    assert "clipped" in warnings[0]
+
+
+def test_whole_numbers_are_scaled_by_their_type_even_where_floats_are_shares():
+    colors = normalized(np.array([[0, 51, 255]], "u1"), [], floats_are_shares=True)
+    assert colors.tolist() == [[0.0, 51 / 255, 1.0]]
+
+
 def test_encoding_is_undone_by_decoding():
     linear = np.linspace(0.0, 1.0, 1001)
     # The standard's constants are rounded to five digits where its two branches meet.

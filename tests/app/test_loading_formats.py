@@ -96,6 +96,68 @@ def test_text_formats_take_other_line_ends(tmp_path, name, end):
     assert len(loaded.mesh.faces) == len(FACES)
 
 
+@pytest.mark.parametrize("name", [name for name in FILES if name != "plain.glb"])
+def test_a_byte_order_mark_is_passed_over_and_counts_for_the_digest(tmp_path, name):
+    plain = load(tmp_path, name, FILES[name])
+    if name == "binary.stl":
+        # Its header is free, and may begin with the mark.
+        content = mesh_files.stl_binary(VERTICES, FACES, b"\xef\xbb\xbfsolid facet")
+    else:
+        content = b"\xef\xbb\xbf" + FILES[name]
+    marked = load(tmp_path, name, content)
+    assert np.array_equal(marked.mesh.vertices, plain.mesh.vertices)
+    assert np.array_equal(marked.mesh.faces, plain.mesh.faces)
+    assert marked.warnings == ()
+    assert marked.digest == hashlib.sha256(content).hexdigest()
+
+
+def test_a_byte_order_mark_does_not_cost_an_obj_its_first_vertex(tmp_path):
+    loaded = load(tmp_path, "a.obj", b"\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    assert loaded.mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+
+
+def stl_with(attribute, header=b"by hand"):
+    content = bytearray(mesh_files.stl_binary(VERTICES, FACES, header))
+    content[84 + 48 : 84 + 50] = attribute.to_bytes(2, "little")
+    return bytes(content)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        (
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            b"property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+            b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 0\n",
+        ),
+        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 0\n"),
+        ("a.stl", stl_with(0x801F)),
+        ("b.stl", stl_with(0, b"COLOR=\1\2\3\4")),
+        (
+            "a.vtp",
+            FILES["plain.vtp"].replace(
+                b"<Points>",
+                b'<CellData>\n<DataArray type="UInt8" Name="RGB" NumberOfComponents="3" '
+                b'format="ascii">' + b"255 0 0 " * len(FACES) + b"</DataArray>\n</CellData>\n"
+                b"<Points>",
+            ),
+        ),
+    ],
+)
+def test_colours_of_faces_are_left_out_aloud(tmp_path, name, content):
+    loaded = load(tmp_path, name, content)
+    assert loaded.warnings == (
+        "the faces have colours of their own: not used, only those of vertices are",
+    )
+    assert (loaded.colors is not None) == (name == "a.vtp")
+
+
+def test_an_attribute_that_is_no_colour_is_passed_over(tmp_path):
+    assert load(tmp_path, "a.stl", stl_with(0x001F)).warnings == ()
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("counter", ["uchar", "int"])
 def test_binary_ply_mixes_polygons(tmp_path, order, counter):

@@ -22,8 +22,8 @@ def reader(tmp_path, monkeypatch, body):
     [
         ("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)", "crashed on it .SIGSEGV"),
         ("import os\nos.abort()", "crashed on it .SIGABRT"),
-        ("raise RuntimeError('odd')", "its reader failed .RuntimeError: odd"),
-        ("import os\nos._exit(0)", "its reader failed .no reason given"),
+        ("raise RuntimeError('odd')", "its reader failed on it .RuntimeError: odd"),
+        ("import os\nos._exit(0)", "its reader failed on it .no reason given"),
         ("return bytearray(1 << 40)", "more than 4 GiB of memory"),
         ("from app.loading import errors\nraise errors.BadContentError('line 3')", "line 3"),
     ],

@@ -6,7 +6,11 @@ from app.picture import render
 from app.pipeline import Pipeline
 from app.quantities import QUANTITIES, robust_range
 from app.session import Camera, Directional, Method, Session
+from lutcore.baking import bake
+from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import ParameterError
+from lutcore.fresnel import mean_transmittance, transmittance
+from lutcore.materials import material
 
 TORUS = Session(mesh="sample:torus", estimator=Method("rusinkiewicz2004"), size=(160, 120))
 
@@ -37,6 +41,19 @@ def test_lengths_on_the_colour_bar_are_millimetres(pipeline):
     one = render(session, pipeline).range
     tenth = render(replace(session, mm_per_unit=10.0), pipeline).range
     np.testing.assert_allclose(np.multiply(tenth, 10.0), one, rtol=1e-9)
+
+
+def test_the_map_can_be_symmetric_and_turned_round(pipeline):
+    session = replace(TORUS, view="curvature", quantity="mean", flat=True)
+    low, high = render(replace(session, symmetric=True), pipeline).range
+    assert low == -high
+    turned = render(replace(session, flip=True), pipeline).image
+    straight = render(session, pipeline).image
+    viridis = render(replace(session, colormap="viridis_r"), pipeline).image
+    np.testing.assert_array_equal(
+        render(replace(session, colormap="viridis", flip=True), pipeline).image, viridis
+    )
+    assert not np.array_equal(turned, straight)
 
 
 def test_a_given_range_and_exposure_are_used(pipeline):
@@ -75,8 +92,47 @@ def test_a_camera_in_numbers_is_used_and_a_parallel_one_has_no_perspective(pipel
     assert made.camera == camera
     # The torus lies in the xy plane and reaches 13.5 on either side: 27/30 of the height at most.
     background = np.array([0x20, 0x24, 0x2A])
-    drawn = (made.image[:100] != background).any(axis=2)
-    assert drawn.any()
+    drawn = (made.image[:110] != background).any(axis=2)
+    columns = np.flatnonzero(drawn.any(axis=0))
+    # 27 mm of 30 are seen over the height less the caption's strip; perspective would add 12 %.
+    assert columns[-1] - columns[0] == pytest.approx(27.0 / 30.0 * 120.0 * 0.955, abs=2.0)
+
+
+def test_a_pixel_is_what_the_formulas_say(tmp_path, pipeline):
+    """Lambert on a grey square, seen and lit aslant: every factor by hand."""
+    path = tmp_path / "g.off"
+    corners = ["-9 -9 0", "9 -9 0", "9 9 0", "-9 9 0"]
+    lines = [f"{corner} 128 128 128 255" for corner in corners]
+    path.write_text("\n".join(["COFF", "4 2 0", *lines, "3 0 1 2", "3 0 2 3", ""]))
+    session = replace(
+        TORUS,
+        mesh=str(path),
+        model=Method("lambert"),
+        lights=(Directional((0.0, 3.0, 4.0), (2.0, 2.0, 2.0)),),
+        camera=Camera((0.0, -30.0, 10.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), height=4.0),
+        exposure=1.0,
+    )
+    pixel = render(session, pipeline).image[57, 80]
+    skin = material("skin1")
+    reflectance = bake(skin).total
+    exit_factor = transmittance(10.0 / np.sqrt(1000.0), skin.eta)
+    albedo = ((128.0 / 255.0 + 0.055) / 1.055) ** 2.4
+    light = 2.0 * 0.8 * reflectance * mean_transmittance(skin.eta) * exit_factor * albedo
+    expected = 255.0 * (1.055 * light ** (1.0 / 2.4) - 0.055)
+    np.testing.assert_allclose(pixel, expected, atol=1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("k1", 0.3), ("k2", -0.1), ("mean", 0.1), ("gauss", -0.03), ("curvedness", 0.05**0.5)],
+)
+def test_a_quantity_is_what_its_name_says_in_millimetres(name, value):
+    one = np.ones(1)
+    curved = PrincipalCurvatures(
+        0.3 * one, -0.1 * one, *(np.zeros((1, 3)) for _ in range(3)), one, 0.0
+    )
+    power = 2 if name == "gauss" else 1
+    assert QUANTITIES[name].values(curved, 2.0)[0] == pytest.approx(value / 2.0**power)
 
 
 def test_vertex_colours_are_albedo_unless_turned_off(tmp_path, pipeline):
@@ -96,5 +152,5 @@ def test_the_robust_range_ignores_outliers_and_infinities_and_never_collapses():
     low, high = robust_range(values)
     assert 0.0 < low < 0.1 < 0.9 < high < 1.0
     low, high = robust_range(np.full(10, 3.0))
-    assert low < 3.0 < high
+    assert low == 3.0 < high
     assert robust_range(np.array([np.inf])) == (0.0, 1.0)

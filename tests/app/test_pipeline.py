@@ -35,12 +35,21 @@ def changed(**fields):
         changed(mm_per_unit=3.0),
         changed(lights=(Directional((0.0, 0.0, 1.0)),)),
         changed(estimator=Method("co-smoothing"), scale=1.0),
+        changed(model=Method("lambert")),
+        changed(model=Method("curvature-lut", {"hinges": 8})),
     ],
 )
 def test_whatever_changes_the_light_is_computed_anew(session):
     pipeline = Pipeline()
     before = pipeline.exitance(TORUS, TORUS.model, AXES)
     assert not np.array_equal(pipeline.exitance(session, session.model, AXES), before)
+
+
+def test_lights_of_the_camera_are_computed_anew_for_another_view():
+    pipeline = Pipeline()
+    before = pipeline.exitance(TORUS, TORUS.model, AXES)
+    turned = AXES[[2, 0, 1]]
+    assert not np.array_equal(pipeline.exitance(TORUS, TORUS.model, turned), before)
 
 
 def test_a_changed_file_is_read_anew(tmp_path):
@@ -55,9 +64,12 @@ def test_a_changed_file_is_read_anew(tmp_path):
 def test_automatic_scale_of_shading_is_no_finer_than_the_glow_and_the_spacing():
     pipeline = Pipeline()
     fine = changed(estimator=Method("auto"), material="marble", mm_per_unit=10.0)
-    wide = changed(estimator=Method("auto"), material="marble", mm_per_unit=0.1)
-    assert pipeline.glow(wide) == pytest.approx(100.0 * pipeline.glow(fine))
+    wide = changed(estimator=Method("auto"), material="marble", mm_per_unit=0.52)
+    huge = changed(estimator=Method("auto"), material="marble", mm_per_unit=0.001)
+    assert pipeline.glow(huge) == pytest.approx(1e4 * pipeline.glow(fine))
     assert pipeline.scale(wide) == pipeline.glow(wide)
+    # No more than a twentieth of the diagonal, though light reaches farther.
+    assert pipeline.scale(huge) == pytest.approx(0.05 * np.sqrt(2 * 27.0**2 + 7.0**2), rel=1e-3)
     # The torus has 4 000 vertices on 4 pi^2 10 3.5 = 1 382 mm^2.
     assert pipeline.scale(fine) == pytest.approx(3.0 * np.sqrt(1382.0 / 4000.0), rel=0.05)
     assert pipeline.scale(changed(estimator=Method("auto"), view="curvature")) is None

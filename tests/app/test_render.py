@@ -88,8 +88,3 @@ def test_a_background_that_is_no_colour_is_refused():
 def test_a_colormap_that_does_not_exist_is_refused_with_the_nearest():
     with pytest.raises(ParameterError, match="did you mean 'viridis'"):
         table("viridi")
-
-
-@pytest.mark.parametrize("name", ["green-red", "viridis"])
-def test_a_reversed_map_is_the_map_reversed(name):
-    np.testing.assert_allclose(table(f"{name}_r"), table(name)[::-1], atol=1e-12)

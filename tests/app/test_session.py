@@ -44,7 +44,8 @@ def test_a_session_comes_back_from_json_as_it_was(session):
     assert from_json(to_json(session)) == session
 
 
-def test_a_session_comes_back_from_a_file_as_it_was(tmp_path):
+def test_a_session_comes_back_from_a_file_as_it_was(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "s.json"
     write(FULL, path)
     again = read(path)

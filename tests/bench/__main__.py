@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-SCRIPTS = ("start", "shading_accuracy", "shading_speed", "curvature", "pictures")
+SCRIPTS = ("start", "shading_accuracy", "shading_speed", "curvature", "loading_speed", "pictures")
 
 
 def main() -> None:

@@ -1,8 +1,9 @@
 import colour
 import numpy as np
+import pytest
 
 from lutcore.color import auto_exposure, srgb_bytes, srgb_decode
-from lutcore.metrics import ciede2000
+from lutcore.metrics import ciede2000, ciede2000_lab
 
 
 def test_encoding_is_the_standards_to_the_rounded_byte():
@@ -34,8 +35,21 @@ def test_automatic_exposure_brings_the_bright_end_to_white_and_leaves_black_alon
     assert auto_exposure(np.zeros((4, 3))) == 1.0
 
 
-def test_ciede2000_of_published_pairs():
-    # Sharma, Wu and Dalal 2005 give pairs in Lab; black against white is 100 in any encoding.
+# Pairs 1, 7, 17 and 25 of Sharma, Wu and Dalal 2005, table 1.
+@pytest.mark.parametrize(
+    ("one", "other", "apart"),
+    [
+        ((50.0, 2.6772, -79.7751), (50.0, 0.0, -82.7485), 2.0425),
+        ((50.0, 0.0, 0.0), (50.0, -1.0, 2.0), 2.3669),
+        ((50.0, 2.5, 0.0), (73.0, 25.0, -18.0), 27.1492),
+        ((60.2574, -34.0099, 36.2677), (60.4626, -34.1751, 39.4387), 1.2644),
+    ],
+)
+def test_the_difference_is_ciede2000s(one, other, apart):
+    assert ciede2000_lab(np.array(one), np.array(other)) == pytest.approx(apart, abs=5e-5)
+
+
+def test_the_difference_of_bytes_is_that_of_the_colours_they_show():
     black, white = np.zeros((1, 3), np.uint8), np.full((1, 3), 255, np.uint8)
     assert abs(ciede2000(black, white)[0] - 100.0) < 0.01
     assert ciede2000(white, white)[0] == 0.0

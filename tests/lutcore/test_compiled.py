@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 
@@ -42,3 +43,20 @@ def test_importing_the_library_compiles_and_imports_nothing_heavy():
     code = "import sys, lutcore; print('numba' in sys.modules, 'numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False False"
+
+
+def test_a_full_disk_keeps_no_code_and_hinders_no_result(tmp_path):
+    code = (
+        "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "import lutcore.color, numpy;"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100));"
+        "print(lutcore.color.srgb_encode(numpy.ones(1))[0] > 0.999)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.strip() == "True", done.stderr

@@ -1,0 +1,176 @@
+"""Run a function on arrays in a child process, with limits of time and memory.
+
+For foreign code that may crash, hang or eat the memory. The child is a fresh interpreter, not a
+fork: threads of this process do not matter to it. Arrays travel through its pipes.
+"""
+
+import atexit
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from lutcore.arrays import AnyArray
+from lutcore.errors import CurvelightError
+from lutcore.isolated_child import JOB, PROBLEM, pack, receive, send, unpack
+from lutcore.progress import Progress, silent, tell
+
+_ROOT = Path(__file__).parents[1]
+_POLL = 0.1  # seconds between looks at the clock and at the caller's wish to stop
+
+
+class IsolatedError(CurvelightError):
+    """Foreign code failed, crashed, or went beyond its time or memory."""
+
+
+def run_isolated(
+    function: str,
+    arrays: Mapping[str, AnyArray],
+    *,
+    label: str,
+    seconds: float,
+    memory: int,
+    keep: bool = False,
+    progress: Progress = silent,
+) -> dict[str, AnyArray]:
+    """Call ``function(**arrays)`` in a child process.
+
+    Parameters
+    ----------
+    function : str
+        Module and name, ``"package.module:name"``. It takes and returns arrays by name.
+    arrays : mapping of str to ndarray
+        Its arguments; of numbers, truth values or text, not of objects.
+    label : str
+        Who does the work, in words, for messages: ``"MeshLab"``.
+    seconds : float
+        Time it may take.
+    memory : int
+        Bytes of address space it may use, where the system can limit that.
+    keep : bool
+        Whether the child waits for the next such call instead of starting anew each time. A call
+        that crashes a child with a past is tried again in a new one.
+    progress : callable
+        Told now and then that the work goes on; see `lutcore.progress`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        What the function returned.
+
+    Raises
+    ------
+    IsolatedError
+        If it raised anything, crashed, or went beyond its time or memory.
+    CancelledError
+        If `progress` asked to stop.
+    """
+    job = json.dumps({"function": function, "memory": memory})
+    payload = pack({**arrays, JOB: np.array(job)})
+    child = _idle.pop() if keep and _idle else _Child()
+    answer = child.call(payload, label, seconds, progress)
+    if answer is None and child.calls > 1:
+        child.stop()
+        child = _Child()
+        answer = child.call(payload, label, seconds, progress)
+    if answer is None:
+        raise IsolatedError(f"{label} {child.last_words()}")
+    if keep and not _idle:
+        _idle.append(child)
+    else:
+        child.stop()
+    found = unpack(answer)
+    if PROBLEM in found:
+        raise IsolatedError(f"{label} {found[PROBLEM]}")
+    return found
+
+
+class _Child:
+    """One child process; its pipes carry a job to it and the answer back."""
+
+    def __init__(self) -> None:
+        # -P, so that a folder of our packages' names where the user stands is not taken for them.
+        command = [sys.executable, "-P", "-m", "lutcore.isolated_child"]
+        paths = [str(_ROOT), *(entry for entry in sys.path if entry)]
+        # Each thread and each arena of the allocator reserves address space, which is limited.
+        few = {"OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
+        self.calls = 0
+        self._process = subprocess.Popen(  # noqa: S603  # our own interpreter and module
+            command,
+            env=os.environ | few | {"PYTHONPATH": os.pathsep.join(paths)},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def call(
+        self, payload: memoryview, label: str, seconds: float, progress: Progress
+    ) -> bytes | None:
+        """Return the answer, or None if the process ended without one."""
+        self.calls += 1
+        answers: list[bytes | None] = []
+        worker = threading.Thread(target=self._exchange, args=(payload, answers), daemon=True)
+        worker.start()
+        end = time.monotonic() + seconds
+        try:
+            while worker.is_alive():
+                worker.join(_POLL)
+                if worker.is_alive():
+                    tell(progress, 0.1, f"waiting for {label}")
+                    if time.monotonic() > end:
+                        raise IsolatedError(f"{label} took more than {seconds:.0f} s")
+        except BaseException:
+            self.stop()
+            raise
+        return answers[0] if answers else None
+
+    def _exchange(self, payload: memoryview, answers: list[bytes | None]) -> None:
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        try:
+            send(self._process.stdin, payload)
+            answers.append(receive(self._process.stdout))
+        except (OSError, ValueError):  # the pipe broke, or was closed by `stop`
+            return
+
+    def last_words(self) -> str:
+        """Return what became of a process that ended without an answer."""
+        code = self._process.wait()
+        self.stop()
+        if code < 0:
+            return f"crashed on it ({signal.Signals(-code).name})"
+        if code > 255:  # Windows tells an exception of the processor by its number
+            return f"crashed on it (0x{code:08X})"
+        return "failed on it (no reason given)"
+
+    def stop(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None and not pipe.closed:
+                _close(pipe)
+
+
+def _close(pipe: io.BufferedIOBase | object) -> None:
+    try:
+        pipe.close()  # type: ignore[union-attr]
+    except OSError:  # what was still to be written has no reader any more
+        return
+
+
+_idle: list[_Child] = []
+
+
+@atexit.register
+def _stop_idle() -> None:
+    while _idle:
+        _idle.pop().stop()
