@@ -26,7 +26,7 @@ def ciede2000(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> FloatArray:
     import colour
 
     lab = [
-        colour.XYZ_to_Lab(colour.sRGB_to_XYZ(image.astype(np.float64) / 255.0))
+        np.asarray(colour.XYZ_to_Lab(colour.sRGB_to_XYZ(image / 255.0)), dtype=np.float64)
         for image in (one, other)
     ]
     return ciede2000_lab(lab[0], lab[1])
