@@ -75,7 +75,7 @@ def run_isolated(
     """
     job = json.dumps({"function": function, "memory": memory})
     payload = pack({**arrays, JOB: np.array(job)})
-    child = _idle.pop() if keep and _idle else _Child()
+    child = _idle_or_new() if keep else _Child()
     answer = child.call(payload, label, seconds, progress)
     if answer is None and child.calls > 1:
         child.stop()
@@ -168,6 +168,13 @@ def _close(pipe: io.BufferedIOBase | object) -> None:
 
 
 _idle: list[_Child] = []
+
+
+def _idle_or_new() -> _Child:
+    try:
+        return _idle.pop()  # asking first whether there is one would race with other threads
+    except IndexError:
+        return _Child()
 
 
 @atexit.register

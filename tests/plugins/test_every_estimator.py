@@ -1,5 +1,7 @@
 """What every curvature estimator promises, whatever its method."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -7,15 +9,38 @@ from numpy.testing import assert_allclose
 from lutcore import analytic
 from lutcore.errors import CancelledError, ParameterError
 from lutcore.estimation import estimators, principal_curvatures
+from lutcore.isolated import IsolatedError
 from lutcore.mesh import TriangleMesh
+from tests.plugins.known_failures import ENDLESS, SOMETIMES, known_failure
 
-NAMES = estimators()
+# meshlab-pca only refuses; `test_peers` shows why.
+NAMES = [name for name in estimators() if name != "meshlab-pca"]
 pytestmark = pytest.mark.parametrize("method", NAMES)
 
 # Clean meshes of 8,000 vertices: spacing h = .03 to .05 at radii near 1, features of radius .25.
 # An estimator of second order errs by some (s k)^2 of k at its scale s of 3 to 5 h.
 CLEAN = 0.05
 SHAPES = ["sphere", "ellipsoid", "cylinder", "torus", "saddle"]
+
+
+@pytest.fixture(autouse=True)
+def _known_failures(request, method):
+    """Expect what other packages are known not to do, and only that."""
+    test, parameters = request.node.originalname, request.node.callspec.id
+    reason = known_failure(test, parameters, method)
+    if reason:
+        expected = pytest.mark.xfail(
+            reason=reason,
+            strict=reason != SOMETIMES,
+            raises=(AssertionError, IsolatedError),
+            run=(test, method) not in ENDLESS,
+        )
+        request.applymarker(expected)
+
+
+@cache
+def exact_surface(shape, irregular):
+    return getattr(analytic, shape)(8_000, irregular)
 
 
 def error(found, truth, where=slice(None)):
@@ -55,7 +80,7 @@ def check_promises(found, mesh):
 @pytest.mark.parametrize("irregular", [False, True])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_values_signs_and_directions_on_exact_surfaces(method, shape, irregular):
-    exact = getattr(analytic, shape)(8_000, irregular)
+    exact = exact_surface(shape, irregular)
     found = principal_curvatures(exact.mesh, method)
     check_promises(found, exact.mesh)
     where = inside(exact.mesh)
@@ -65,13 +90,13 @@ def test_values_signs_and_directions_on_exact_surfaces(method, shape, irregular)
     assert np.einsum("ij,ij->i", found.normals, exact.truth.normals)[where].min() > 0.98
     # A tensor that is off by e turns its directions by e/(k1 - k2): judged where those differ.
     clear = where & (exact.truth.k1 - exact.truth.k2 > 0.5 * np.abs(exact.truth.k1).max())
-    if clear.any():
+    if found.directed and clear.any():
         cosine = np.abs(np.einsum("ij,ij->i", found.d1, exact.truth.d1)[clear])
         assert np.sqrt(np.mean(np.maximum(1.0 - cosine**2, 0.0))) < 2.0 * limit
 
 
 def test_error_bars_cover_the_error(method):
-    exact = analytic.torus(8_000, irregular=True)
+    exact = exact_surface("torus", True)
     for noise in (0.02, 0.1):
         found = principal_curvatures(exact.noisy(noise), method)
         actual = np.sqrt(
@@ -92,8 +117,9 @@ def test_rotation_turns_the_directions_and_nothing_else(method):
     assert_allclose(after.k2, before.k2, atol=2e-4 * before.k1.max())
     assert_allclose(after.normals, before.normals @ turn.T, atol=1e-4)
     clear = before.k1 - before.k2 > 0.3 * before.k1.max()
-    along = np.abs(np.einsum("ij,ij->i", after.d1, before.d1 @ turn.T)[clear])
-    assert along.min() > 1.0 - 1e-4
+    if before.directed:
+        along = np.abs(np.einsum("ij,ij->i", after.d1, before.d1 @ turn.T)[clear])
+        assert along.min() > 1.0 - 1e-4
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
