@@ -86,8 +86,9 @@ def principal_curvatures(
         return _nothing(len(mesh.vertices))
     # Estimators see a mesh of about unit size, so that no square leaves the range of numbers; a
     # power of two changes no bits.
-    unit = float(2.0 ** np.round(np.log2(welded.mesh.diagonal)))
-    sized = TriangleMesh.trusted(welded.mesh.vertices / unit, welded.mesh.faces)
+    points = welded.mesh.vertices  # centred
+    unit = float(2.0 ** np.ceil(np.log2(max(points.max(), -points.min()))))
+    sized = TriangleMesh.trusted(points * (1.0 / unit), welded.mesh.faces)
     found = plugin.estimate(sized, None if scale is None else scale / unit, progress)
     tell(progress, 1.0, "done")
     return _spread(welded, found, unit)

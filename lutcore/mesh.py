@@ -59,8 +59,11 @@ class TriangleMesh:
     @cached_property
     def diagonal(self) -> float:
         """Length of the diagonal of the box around the referenced vertices, in mesh units."""
-        used = self.vertices[self.faces.ravel()]
-        return float(np.linalg.norm(used.max(axis=0) - used.min(axis=0)))
+        used = np.zeros(len(self.vertices), dtype=bool)
+        used[self.faces.ravel()] = True
+        points = self.vertices if used.all() else self.vertices[used]
+        # By columns: NumPy reduces rows of three many times slower.
+        return float(np.linalg.norm([np.ptp(points[:, axis]) for axis in range(3)]))
 
 
 def _vertices(value: ArrayLike) -> FloatArray:

@@ -1,6 +1,6 @@
 """Speed and accuracy of every curvature estimator beside VTK called bare, in one run.
 
-    python -m tests.bench.curvature [--size 1000000] [--accuracy 160000] [--limit 120] [--json]
+    python -m tests.bench.curvature [--size 1000000] [--accuracy 160000] [--only A,B] [--json]
 
 Times are of the second call, on a mesh that is already in memory: ours from a TriangleMesh, VTK's
 from a vtkPolyData, for both principal curvatures. Estimators of other packages run in a child
@@ -100,15 +100,18 @@ def times(size: int, repeats: int) -> dict[str, dict[str, float]]:
     }
 
 
-def every(size: int, limit: float) -> dict[str, dict[str, Any]]:
+def every(size: int, limit: float, only: str | None) -> dict[str, dict[str, Any]]:
     """Return the time of every estimator, and its error on two triangulations and three noises."""
-    table: dict[str, dict[str, Any]] = {name: {} for name in contestants()}
+    wanted = contestants()
+    if only is not None:
+        wanted = {name: wanted[name] for name in only.split(",")}
+    table: dict[str, dict[str, Any]] = {name: {} for name in wanted}
     for irregular in (False, True):
         exact = torus(size, irregular)
         for share in (0.0, 0.02, 0.1):
             column = f"{'irregular' if irregular else 'regular'} {share:g}"
             mesh = exact.noisy(share) if share else exact.mesh
-            for name, (method, parameters) in contestants().items():
+            for name, (method, parameters) in wanted.items():
                 row = table[name]
                 if "stopped" in row:
                     continue
@@ -159,7 +162,8 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=1_000_000)
     parser.add_argument("--accuracy", type=int, default=160_000)
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--limit", type=float, default=120.0, help="seconds for one call")
+    parser.add_argument("--limit", type=float, default=20.0, help="seconds for one call")
+    parser.add_argument("--only", metavar="A,B", help="estimators to judge for accuracy")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--memory", metavar="METHOD", help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -170,7 +174,7 @@ def main() -> None:
         "vertices": options.size,
         "times": times(options.size, options.repeats),
         "bytes_per_vertex": {name: round(peak_memory(options.size, name)) for name in OURS},
-        "accuracy": every(options.accuracy, options.limit),
+        "accuracy": every(options.accuracy, options.limit, options.only),
     }
     if options.json:
         print(json.dumps(report))
