@@ -42,9 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = _joined(list(sys.argv[1:] if arguments is None else arguments))
     verbose = "--verbose" in words
     try:
-        return _run(words)
-    except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else USAGE
+        code = _run_to_exit(words)
+        # Here rather than at the interpreter's end, where a reader that left could not be caught.
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt:
         return _fail("interrupted; nothing was half written", INTERRUPTED, verbose)
     except BrokenPipeError:
@@ -98,6 +99,13 @@ def _fail(message: str, code: int, verbose: bool) -> int:
         traceback.print_exc()
     print(f"curvelight: {message}", file=sys.stderr)  # noqa: T201
     return code
+
+
+def _run_to_exit(words: list[str]) -> int:
+    try:
+        return _run(words)
+    except SystemExit as stop:  # argparse, after help or a usage error
+        return stop.code if isinstance(stop.code, int) else USAGE
 
 
 def _run(words: list[str]) -> int:
