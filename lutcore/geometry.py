@@ -170,6 +170,22 @@ def median_vertex_area(areas: FloatArray) -> float:
     return float(np.median(areas[areas > 0.0]))
 
 
+def typical_spacing(mesh: TriangleMesh) -> float:
+    """Return the square root of the median vertex area.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+
+    Returns
+    -------
+    float
+        The mesh's typical spacing, mesh units.
+    """
+    return float(np.sqrt(median_vertex_area(vertex_areas(mesh, vertex_corners(mesh)))))
+
+
 @compiled(parallel=True)
 def _vertex_corners(
     faces: IndexArray, vertex_count: int, chunks: int

@@ -5,7 +5,7 @@ import numpy as np
 from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface, smooth
-from lutcore.geometry import median_vertex_area, vertex_areas, vertex_corners
+from lutcore.geometry import typical_spacing
 from lutcore.laplacian import Laplacian
 from lutcore.mesh import TriangleMesh
 from lutcore.noise import extrapolated_noise, vertex_noise
@@ -51,9 +51,7 @@ def shading_scale(mesh: TriangleMesh, glow: float) -> float:
     welded = weld(mesh).mesh
     if welded is None:
         return glow
-    areas = vertex_areas(welded, vertex_corners(welded))
-    spacing = float(np.sqrt(median_vertex_area(areas)))
-    return max(min(glow, _LONGEST * welded.diagonal), _SHADING * spacing)
+    return max(min(glow, _LONGEST * welded.diagonal), _SHADING * typical_spacing(welded))
 
 
 def best_scale(on: Surface, progress: Progress = silent) -> float:

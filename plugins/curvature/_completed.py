@@ -8,30 +8,12 @@ from lutcore.compiled import compiled
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.geometry import (
     Corners,
-    median_vertex_area,
     other_two,
-    vertex_areas,
     vertex_corners,
     vertex_normals,
 )
 from lutcore.mesh import TriangleMesh
 from lutcore.tensors import tangent_frame
-
-
-def typical_spacing(mesh: TriangleMesh) -> float:
-    """Return the square root of the median vertex area.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        The surface.
-
-    Returns
-    -------
-    float
-        The mesh's typical spacing, mesh units.
-    """
-    return float(np.sqrt(median_vertex_area(vertex_areas(mesh, vertex_corners(mesh)))))
 
 
 def completed(

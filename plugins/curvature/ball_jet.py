@@ -10,13 +10,12 @@ from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
-from lutcore.geometry import area_normals, vertex_corners
+from lutcore.geometry import area_normals, typical_spacing, vertex_corners
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import param
 from lutcore.progress import Progress, tell
 from lutcore.tensors import Vector, tangent_frame, write_principal
 from plugins.curvature._balls import BLOCK, fixed_faces, gather_ball
-from plugins.curvature._completed import typical_spacing
 
 _DEFAULT_SPACINGS = 4.0
 # Smallest pivot of the normal equations, as a share of the diagonal, that is more than rounding.

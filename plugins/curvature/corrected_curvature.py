@@ -10,12 +10,12 @@ from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
-from lutcore.geometry import area_normals, edge, vertex_corners
+from lutcore.geometry import area_normals, edge, typical_spacing, vertex_corners
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, tell
 from lutcore.tensors import Vector, tangent_frame, write_principal
 from plugins.curvature._balls import BLOCK, fixed_faces, gather_ball
-from plugins.curvature._completed import spread, typical_spacing
+from plugins.curvature._completed import spread
 
 _DEFAULT_SPACINGS = 3.0
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
+from lutcore.geometry import typical_spacing
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import param
 from lutcore.progress import Progress
-from plugins.curvature._completed import completed, typical_spacing
+from plugins.curvature._completed import completed
 from plugins.curvature._foreign import foreign, patience
 
 # Rings of a triangulation of equilateral triangles are sqrt(2/sqrt(3)) spacings apart.

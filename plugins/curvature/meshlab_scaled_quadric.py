@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
+from lutcore.geometry import typical_spacing
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress
-from plugins.curvature._completed import completed, typical_spacing
+from plugins.curvature._completed import completed
 from plugins.curvature._foreign import foreign, patience
 
 _DEFAULT_SPACINGS = 4.0

@@ -1,10 +1,10 @@
 import hashlib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.loading import load_mesh
+from app.samples import sample
 from tests import mesh_files
 
 VERTICES, FACES = mesh_files.grid()
@@ -271,13 +271,11 @@ def test_vtp_reads_compressed_appended_data_and_strips(tmp_path):
 
 
 def test_the_scanned_face_loads_whole():
-    pymeshlab = pytest.importorskip("pymeshlab")
-    folder = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "rangemaps"
-    if not (folder / "face000.ply").exists():
-        pytest.skip("this pymeshlab ships no face000.ply")
-    loaded = load_mesh(folder / "face000.ply")
+    import trimesh
+
+    path = sample("marble-face-raw").path
+    loaded = load_mesh(path)
     assert (len(loaded.mesh.vertices), len(loaded.mesh.faces)) == (85_849, 166_259)
-    trimesh = pytest.importorskip("trimesh")
-    peer = trimesh.load(folder / "face000.ply", process=False)
+    peer = trimesh.load(path, process=False)
     assert np.array_equal(peer.vertices, loaded.mesh.vertices)
     assert np.array_equal(peer.faces, loaded.mesh.faces)
