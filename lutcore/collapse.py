@@ -4,7 +4,7 @@ import numpy as np
 
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
-from lutcore.tensors import tangent_frame
+from lutcore.tensors import in_space, in_tangent_plane
 
 # Passes of the interpolation: reaches that many rings, more than a corner of a rim closes.
 _PASSES = 40
@@ -43,7 +43,7 @@ def mend(
         number[closed[c]] = c
     now = np.empty((len(closed), 7))
     for c in range(len(closed)):
-        now[c, :6] = _in_space(normals[closed[c]], tensors[closed[c]])
+        now[c, :6] = in_space(normals[closed[c]], tensors[closed[c]])
         now[c, 6] = square[closed[c]]
     after = np.empty_like(now)
     for _ in range(_PASSES):
@@ -55,43 +55,11 @@ def mend(
                 if number[j] >= 0:
                     total += now[number[j]]
                 else:
-                    total[:6] += _in_space(normals[j], tensors[j])
+                    total[:6] += in_space(normals[j], tensors[j])
                     total[6] += square[j]
             after[c] = total / (last - first + 1)
         now, after = after, now
     for c in range(len(closed)):
         i = closed[c]
-        u, v = tangent_frame(normals[i, 0], normals[i, 1], normals[i, 2])
-        tensors[i, 0] = _between(now[c], u, u)
-        tensors[i, 1] = _between(now[c], u, v)
-        tensors[i, 2] = _between(now[c], v, v)
+        tensors[i, 0], tensors[i, 1], tensors[i, 2] = in_tangent_plane(normals[i], now[c])
         square[i] = 4.0 * now[c, 6]
-
-
-@compiled()
-def _in_space(normal: FloatArray, tensor: FloatArray) -> FloatArray:
-    """Return the entries xx, xy, xz, yy, yz, zz of a tangent tensor."""
-    u, v = tangent_frame(normal[0], normal[1], normal[2])
-    out = np.empty(6)
-    at = 0
-    for a in range(3):
-        for b in range(a, 3):
-            out[at] = (
-                tensor[0] * u[a] * u[b]
-                + tensor[1] * (u[a] * v[b] + v[a] * u[b])
-                + tensor[2] * v[a] * v[b]
-            )
-            at += 1
-    return out
-
-
-@compiled()
-def _between(t: FloatArray, p: tuple[float, float, float], q: tuple[float, float, float]) -> float:
-    return (
-        t[0] * p[0] * q[0]
-        + t[1] * (p[0] * q[1] + p[1] * q[0])
-        + t[2] * (p[0] * q[2] + p[2] * q[0])
-        + t[3] * p[1] * q[1]
-        + t[4] * (p[1] * q[2] + p[2] * q[1])
-        + t[5] * p[2] * q[2]
-    )

@@ -100,7 +100,22 @@ def _keep_going(cache: Any) -> None:
     cache.save_overload = attempt
 
 
-def compiled(*, parallel: bool = False) -> Callable[[F], F]:
+def _pack(dispatcher: Any) -> None:
+    """Let LLVM join neighbouring operations into vector instructions; numba leaves that off."""
+    compile_ = dispatcher.compile
+
+    def packed(signature: Any) -> Any:
+        before = numba.config.SLP_VECTORIZE
+        numba.config.SLP_VECTORIZE = 1
+        try:
+            return compile_(signature)
+        finally:
+            numba.config.SLP_VECTORIZE = before
+
+    dispatcher.compile = packed
+
+
+def compiled(*, parallel: bool = False, packed: bool = False) -> Callable[[F], F]:
     """Return the decorator that compiles a function to machine code at its first call.
 
     Parameters
@@ -108,6 +123,9 @@ def compiled(*, parallel: bool = False) -> Callable[[F], F]:
     parallel : bool
         Whether `numba.prange` loops run on all cores. Each iteration must write its own elements
         only, so that results do not depend on the number of threads.
+    packed : bool
+        Whether runs of like operations become vector instructions: worth it where a loop's body
+        does the same to several fields. Compiling takes longer.
 
     Returns
     -------
@@ -123,6 +141,8 @@ def compiled(*, parallel: bool = False) -> Callable[[F], F]:
             jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
             dispatcher = jit(function)
             _keep_going(dispatcher._cache)
+            if packed:
+                _pack(dispatcher)
             return dispatcher
         finally:
             numba.config.CACHE_DIR = before

@@ -1,6 +1,6 @@
 """Curvature from positions and normals that were smoothed alike.
 
-Positions X and normals N go through one diffusion; then dN = S dX over a star gives the shape
+Positions X and normals N go through one filter; then dN = S dX over a star gives the shape
 operator S. That is exact wherever N is affine in X (plane, sphere, cylinder) on any triangulation
 and at any scale, because both sides were averaged with the same weights.
 """
@@ -13,11 +13,12 @@ from numba import prange
 
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
-from lutcore.geometry import area_normals, median_vertex_area, vertex_areas, vertex_corners
-from lutcore.heat import SingleArray, diffusion
+from lutcore.geometry import median_vertex_area, vertex_corners
 from lutcore.laplacian import Laplacian, laplacian
+from lutcore.lowpass import SingleArray, low_pass
 from lutcore.mesh import TriangleMesh
-from lutcore.progress import Progress, silent
+from lutcore.progress import Progress, part, silent, tell
+from lutcore.stars import stars
 from lutcore.tensors import symmetric_fit, tangent_frame
 
 
@@ -30,7 +31,7 @@ class Surface:
     fields : ndarray, shape=(n, 6)
         Positions and unit normals.
     operator : Laplacian
-        What diffuses them.
+        What smooths them.
     spacing : float
         Square root of the median vertex area, mesh units.
     """
@@ -47,40 +48,42 @@ class Smoothed:
     Parameters
     ----------
     scales : tuple of float
-        The scales, mesh units; the first is 0, the star as it is.
+        The scales, mesh units, growing; the first is 0, the star as it is.
     normals : ndarray, shape=(n, 3)
         Unit normals at the base scale; tensors are in their `tangent_frame`.
-    tensors : ndarray, shape=(n, S, 3)
+    tensors : ndarray of float32, shape=(n, S, 3)
         Entries xx, xy, yy of the shape operator, 1/mesh unit.
-    stretch : ndarray, shape=(n, S)
+    stretch : ndarray of float32, shape=(n, S)
         How far smoothing left the star open: the ratio of its least extent to that before.
     """
 
     scales: tuple[float, ...]
     normals: FloatArray
-    tensors: FloatArray
-    stretch: FloatArray
+    tensors: SingleArray
+    stretch: SingleArray
 
 
-def surface(mesh: TriangleMesh) -> Surface:
+def surface(mesh: TriangleMesh, progress: Progress = silent) -> Surface:
     """Return what `smooth` needs of a mesh.
 
     Parameters
     ----------
     mesh : TriangleMesh
         Centred, every vertex used by a face with an area.
+    progress : callable
+        Told where the work stands.
 
     Returns
     -------
     Surface
         Its fields and Laplacian.
     """
+    tell(progress, 0.0, "reading the neighbourhoods")
     corners = vertex_corners(mesh)
-    areas = vertex_areas(mesh, corners)
+    tell(progress, 0.1, "averaging over stars")
+    areas, fields = stars(mesh, corners)
     typical = median_vertex_area(areas)
-    fields = np.empty((len(mesh.vertices), 6))
-    fields[:, :3] = mesh.vertices
-    fields[:, 3:] = area_normals(mesh, corners)
+    tell(progress, 0.4, "weighing neighbours")
     return Surface(fields, laplacian(mesh, corners, areas, typical), float(np.sqrt(typical)))
 
 
@@ -94,7 +97,7 @@ def smooth(
     on : Surface
         The mesh.
     scales : sequence of float
-        Standard deviations of the smoothing, mesh units, positive.
+        Scales of the smoothing as `low_pass` counts them, mesh units, positive and growing.
     base : int
         Which of them gives the normals.
     progress : callable
@@ -105,9 +108,8 @@ def smooth(
     Smoothed
         Tensors of scale 0 and of all scales given.
     """
-    # Raw noise of k is some 10 (s / spacing)^3 times that of the result: keep a tenth of it.
-    tolerance = 0.01 * min(1.0, on.spacing / max(scales)) ** 3
-    change = diffusion(on.operator, on.fields, scales, tolerance, progress)
+    change = low_pass(on.operator, on.fields, scales, part(progress, 0.0, 0.7))
+    tell(progress, 0.7, "fitting shape operators")
     normals, tensors, stretch = _tensors(
         on.operator.start, on.operator.neighbour, on.fields, change, base
     )
@@ -117,11 +119,11 @@ def smooth(
 @compiled(parallel=True)
 def _tensors(
     start: IndexArray, neighbour: IndexArray, fields: FloatArray, change: SingleArray, base: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, SingleArray, SingleArray]:
     count, scales = change.shape[0], change.shape[1]
     normals = np.empty((count, 3))
-    tensors = np.empty((count, scales + 1, 3))
-    stretch = np.empty((count, scales + 1))
+    tensors = np.empty((count, scales + 1, 3), np.float32)
+    stretch = np.empty((count, scales + 1), np.float32)
     for i in prange(count):
         nx = fields[i, 3] + change[i, base, 3]
         ny = fields[i, 4] + change[i, base, 4]

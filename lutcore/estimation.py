@@ -1,8 +1,11 @@
 """The call that runs a curvature estimator on any mesh."""
 
+from typing import ClassVar, cast
+
 import numpy as np
 
-from lutcore.arrays import finite
+from lutcore.arrangement import arranged
+from lutcore.arrays import FloatArray, finite
 from lutcore.curvature import Estimator, PrincipalCurvatures
 from lutcore.errors import ParameterError
 from lutcore.mesh import TriangleMesh
@@ -13,7 +16,12 @@ from lutcore.weld import Welded, weld
 
 
 class EstimatorParameters(Parameters, Estimator):
-    """Base of every curvature plug-in: checked parameters and `estimate`."""
+    """Base of every curvature plug-in: checked parameters and `estimate`.
+
+    `per_vertex` tells whether its scale may be an array with a length for each vertex.
+    """
+
+    per_vertex: ClassVar[bool] = False
 
 
 estimator_registry: Registry[EstimatorParameters] = Registry(
@@ -36,7 +44,7 @@ def estimators() -> list[str]:
 def principal_curvatures(
     mesh: TriangleMesh,
     method: str = "auto",
-    scale: float | None = None,
+    scale: float | FloatArray | None = None,
     *,
     progress: Progress = silent,
     **parameters: object,
@@ -51,8 +59,9 @@ def principal_curvatures(
         The surface; its faces' order says which side is outside.
     method : str
         Name of an estimator.
-    scale : float or None
-        Length to average over, mesh units; None leaves it to the estimator.
+    scale : float, array_like, shape=(n,), or None
+        Length to average over, mesh units, for all vertices or for each; None leaves it to the
+        estimator.
     progress : callable
         Told where the work stands; see `lutcore.progress`.
     **parameters : object
@@ -73,15 +82,9 @@ def principal_curvatures(
         If `progress` asked to stop.
     """
     plugin = create(estimator_registry.get(method), f"curvature estimator {method!r}", parameters)
-    if scale is not None:
-        scale = float(finite("scale", scale, ()))
-        if not 0.0 < scale <= mesh.diagonal:
-            raise ParameterError(
-                f"scale = {scale!r} is not a length between 0 and the mesh's diagonal, "
-                f"{mesh.diagonal:.6g}"
-            )
+    lengths = None if scale is None else _checked(scale, mesh, plugin, method)
     tell(progress, 0.0, "joining vertices")
-    welded = weld(mesh)
+    welded = arranged(weld(mesh))
     if welded.mesh is None:
         return _nothing(len(mesh.vertices))
     # Estimators see a mesh of about unit size, so that no square leaves the range of numbers; a
@@ -89,9 +92,33 @@ def principal_curvatures(
     points = welded.mesh.vertices  # centred
     unit = float(2.0 ** np.ceil(np.log2(max(points.max(), -points.min()))))
     sized = TriangleMesh.trusted(points * (1.0 / unit), welded.mesh.faces)
-    found = plugin.estimate(sized, None if scale is None else scale / unit, progress)
+    if isinstance(lengths, np.ndarray):
+        lengths = welded.gather(lengths)
+    # Only a plug-in that says so is given an array.
+    asked = cast(float | None, None if lengths is None else lengths / unit)
+    found = plugin.estimate(sized, asked, progress)
     tell(progress, 1.0, "done")
     return _spread(welded, found, unit)
+
+
+def _checked(
+    scale: float | FloatArray, mesh: TriangleMesh, plugin: EstimatorParameters, method: str
+) -> float | FloatArray:
+    """Return the scale or the scales that were asked for, or say what is wrong with them."""
+    each = np.ndim(scale) > 0
+    if each and not plugin.per_vertex:
+        raise ParameterError(
+            f"{method} takes one scale for the whole mesh, not one for each vertex; auto and "
+            "co-smoothing take either"
+        )
+    lengths = finite("scale", scale, (len(mesh.vertices),) if each else ())
+    wrong = lengths[~((lengths > 0.0) & (lengths <= mesh.diagonal))]
+    if wrong.size:
+        raise ParameterError(
+            f"scale = {float(wrong[0])!r} is not a length between 0 and the mesh's diagonal, "
+            f"{mesh.diagonal:.6g}"
+        )
+    return lengths if each else float(lengths)
 
 
 def _spread(welded: Welded, found: PrincipalCurvatures, unit: float) -> PrincipalCurvatures:

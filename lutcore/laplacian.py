@@ -6,7 +6,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray, IndexArray
+from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.geometry import Corners, edge, other_two
 from lutcore.mesh import TriangleMesh
@@ -33,12 +33,15 @@ class Laplacian(NamedTuple):
         Rate of exchange with each neighbour, non-negative, in units of ``bound / 2``.
     bound : float
         No eigenvalue of L is larger, 1/mesh unit squared.
+    rim : ndarray of bool, shape=(n,)
+        Vertices at an edge of one face only.
     """
 
     start: IndexArray
     neighbour: IndexArray
     rate: NDArray[np.float32]
     bound: float
+    rim: BoolArray
 
 
 def laplacian(
@@ -68,7 +71,7 @@ def laplacian(
     ring, count = _rings(mesh.faces, corners.start, corners.corner)
     start = np.zeros(len(count) + 1, np.int32)
     np.cumsum(count, out=start[1:])
-    neighbour, rate = _rates(
+    neighbour, rate, rim = _rates(
         mesh.vertices,
         mesh.faces,
         corners.start,
@@ -78,7 +81,25 @@ def laplacian(
         areas,
         _ROW_CAP / typical_area,
     )
-    return Laplacian(start, neighbour, rate, 2.0 * _ROW_CAP / typical_area)
+    # Even meshes stay far below the cap, and the work grows with the root of the bound.
+    largest = _relative_to_largest(start, rate)
+    return Laplacian(start, neighbour, rate, 2.0 * _ROW_CAP * largest / typical_area, rim)
+
+
+@compiled(parallel=True)
+def _relative_to_largest(start: IndexArray, rate: NDArray[np.float32]) -> float:
+    """Divide the rates by their largest row sum and return that."""
+    total = np.empty(len(start) - 1)
+    for i in prange(len(total)):
+        row = 0.0
+        for at in range(start[i], start[i + 1]):
+            row += rate[at]
+        total[i] = row
+    largest = total.max()
+    for i in prange(len(total)):
+        for at in range(start[i], start[i + 1]):
+            rate[at] /= largest
+    return float(largest)
 
 
 @compiled(parallel=True)
@@ -124,7 +145,8 @@ def _rates(
     start: IndexArray,
     areas: FloatArray,
     cap: float,
-) -> tuple[IndexArray, NDArray[np.float32]]:
+) -> tuple[IndexArray, NDArray[np.float32], BoolArray]:
+    on_rim = np.empty(len(vertices), np.bool_)
     neighbour = np.empty(start[-1], np.int32)
     rate = np.empty(start[-1], np.float32)
     for vertex in prange(len(vertices)):
@@ -146,6 +168,7 @@ def _rates(
         rim = 0
         for j in range(last - first):
             rim += faces_at[j] == 1
+        on_rim[vertex] = rim > 0
         mass = areas[vertex]
         if rim > 0:
             # On the rim: the Laplacian of the curve that its rim edges form.
@@ -165,4 +188,4 @@ def _rates(
         mass = max(mass, total / cap)
         for j in range(last - first):
             rate[first + j] = weight[j] / (mass * cap)
-    return neighbour, rate
+    return neighbour, rate, on_rim

@@ -2,40 +2,39 @@
 
 import numpy as np
 from numba import prange
+from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
+from lutcore.bands import INTERIOR, bands
 from lutcore.collapse import mend
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
 from lutcore.curvature import PrincipalCurvatures
-from lutcore.noise import extrapolated_noise, plain_noise, vertex_noise
+from lutcore.lowpass import SingleArray
+from lutcore.progress import Progress, silent, tell
+from lutcore.refinement import refined
 from lutcore.tensors import write_principal
 
-# A star that smoothing has closed to less than this share of its extent says more about the
-# noise than about the surface.
-_CLOSED = 0.25
-# Bias after extrapolation over the change from the finer scale: 1/(1 - 1/4).
-_LEFT = 4.0 / 3.0
+# A star that smoothing has closed to less than this share of its extent tells nothing more.
+_CLOSED = 0.05
+# Bias at a scale, over the change to the next, squared: 1/(g - 1)^2 where that change itself grows
+# by g from band to band. A filter of fourth order has g = 4 on wide features; near the scale it
+# is less, which the bands tell. Never less than the first of these, nor g - 1 than the second.
+_BIAS, _SLOWEST = 0.2, 0.7
+# The unsmoothed star has no finer scale to compare with: nearly all the change is its error.
+_RAW = 1.1
+# A neighbourhood's own noise counts as much as that of its class, up to this many times it.
+_OWN, _LOUDEST = 1.0, 4.0
+# Nothing is known to be smooth over more than its radius of curvature: relative bias that is
+# assumed at (scale k)^4 = 1, with k at half the scale.
+_ROUND = 0.3
+# Weights of scales fall with this power of their squared error, so that the choice has no seams.
+_SHARPNESS = 4
+# Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
+# vertices of noisy surfaces; near rims neighbours err alike and more.
+_CALIBRATION, _CALIBRATION_AT_RIM = 0.75, 1.5
 # A polyhedron is off by this times k^3 spacing^2 at any scale, as on a clean regular torus.
-_FACETS = 0.11
-
-
-def extrapolated(smoothed: Smoothed, scale: int) -> FloatArray:
-    """Return the tensors with the error of order s^2 removed (Richardson).
-
-    Parameters
-    ----------
-    smoothed : Smoothed
-        Tensors at scales that grow by sqrt(2).
-    scale : int
-        Column of the scale s; the next is sqrt(2) s.
-
-    Returns
-    -------
-    ndarray, shape=(n, 3)
-        2 S(s) - S(sqrt(2) s).
-    """
-    return 2.0 * smoothed.tensors[:, scale] - smoothed.tensors[:, scale + 1]
+_FACETS = 0.2
 
 
 def tilt_correction(on: Surface, smoothed: Smoothed) -> float:
@@ -57,102 +56,178 @@ def tilt_correction(on: Surface, smoothed: Smoothed) -> float:
     float
         A factor of at least 1 for every shape operator.
     """
-    lost = 1.0 - np.einsum("ij,ij->i", on.fields[:, 3:], smoothed.normals)
+    every = 1 + len(on.fields) // 100_000
+    lost = 1.0 - np.einsum("ij,ij->i", on.fields[::every, 3:], smoothed.normals[::every])
     return 1.0 / (1.0 - min(0.5, float(np.median(lost)) / float(np.log(2.0))))
 
 
-def select(on: Surface, smoothed: Smoothed, scale: int = 2) -> PrincipalCurvatures:
-    """Return the curvatures at one scale, each vertex falling back where its star collapsed.
+def select(
+    on: Surface,
+    smoothed: Smoothed,
+    lengths: FloatArray | float | None = None,
+    precision: float = 0.0,
+    progress: Progress = silent,
+) -> PrincipalCurvatures:
+    """Return the curvatures at each vertex's own scale.
 
     Parameters
     ----------
     on : Surface
         The mesh.
     smoothed : Smoothed
-        It, smoothed, at scales that grow by sqrt(2), its normals at the scale wanted.
-    scale : int
-        Column of the scale wanted, at least 2; one before and one after it are used.
+        It, smoothed, at scales that grow by sqrt(2) or so.
+    lengths : float or ndarray, shape=(n,), optional
+        Scale wanted, for all or for each vertex, mesh units. If not given, the one of least noise
+        and bias together.
+    precision : float
+        Error, as a share of the typical curvature, below which the finer scale is taken.
+    progress : callable
+        Told where the work stands.
 
     Returns
     -------
     PrincipalCurvatures
         One value for each vertex, with the scale that was used there.
     """
-    links = (on.operator.start, on.operator.neighbour)
-    sigma = vertex_noise(
-        *links, on.fields[:, :3], smoothed.normals, smoothed.tensors[:, scale].copy()
-    )
-    fine, wanted = smoothed.scales[scale - 1 : scale + 1]
-    noise = [plain_noise(sigma, on.spacing, length) for length in (0.0, fine)]
-    noise.append(extrapolated_noise(sigma, on.spacing, wanted))
-    tensors, square, used = _select(
+    tell(progress, 0.0, "telling noise from bias")
+    found = bands(on, smoothed)
+    tell(progress, 0.4, "choosing scales")
+    scales = np.array(smoothed.scales[:-1])
+    size = _typical_square(smoothed)
+    wanted = np.broadcast_to(np.asarray(0.0 if lengths is None else lengths, float), len(on.fields))
+    tensors, square, used = _mix(
         smoothed.tensors,
         smoothed.stretch,
-        scale,
-        np.array(noise),
-        np.array([0.0, fine, wanted]),
-        on.spacing,
+        *found,
+        scales,
+        wanted,
+        precision * precision * size,
+        1.0 / on.spacing,
     )
-    mend(*links, smoothed.normals, np.flatnonzero(used == 0.0).astype(np.int32), tensors, square)
-    k, directions = _principal(smoothed.normals, tensors, tilt_correction(on, smoothed))
+    links = (on.operator.start, on.operator.neighbour)
+    mend(*links, smoothed.normals, np.flatnonzero(used < 0.0).astype(np.int32), tensors, square)
+    np.maximum(used, 0.0, out=used)
+    tell(progress, 0.6, "joining scales")
+    refined(on, smoothed.normals, used, tensors, square)
+    tell(progress, 0.9, "principal directions")
+    k, directions, error = _principal(
+        smoothed.normals, tensors, square, tilt_correction(on, smoothed), _FACETS * on.spacing**2
+    )
     return PrincipalCurvatures(
-        k[0], k[1], directions[0], directions[1], smoothed.normals, np.sqrt(square), used
+        k[0], k[1], directions[0], directions[1], smoothed.normals, error, used
     )
+
+
+def _typical_square(smoothed: Smoothed) -> float:
+    """Return the median of (k1^2 + k2^2)/2 at the middle scale."""
+    every = 1 + len(smoothed.tensors) // 100_000
+    tensor = smoothed.tensors[::every, len(smoothed.scales) // 2].astype(np.float64)
+    return float(np.median(0.5 * (tensor[:, 0] ** 2 + tensor[:, 2] ** 2) + tensor[:, 1] ** 2))
 
 
 @compiled(parallel=True)
-def _select(
-    tensors: FloatArray,
-    stretch: FloatArray,
-    scale: int,
+def _mix(
+    tensors: SingleArray,
+    stretch: SingleArray,
+    energy: SingleArray,
+    place: NDArray[np.int8],
     noise: FloatArray,
-    lengths: FloatArray,
-    spacing: float,
+    left: FloatArray,
+    scales: FloatArray,
+    wanted: FloatArray,
+    floor: float,
+    unknown: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return tensors, squared error bars and scales; scale 0 where the star has closed."""
-    count = len(tensors)
-    chosen = np.empty((count, 3))
-    square = np.empty(count)
-    used = np.empty(count)
-    for i in prange(count):
-        fine, wanted, coarse = tensors[i, scale - 1], tensors[i, scale], tensors[i, scale + 1]
-        openness = min(stretch[i, scale], stretch[i, scale + 1])
-        if openness >= _CLOSED:
-            chosen[i] = 2.0 * wanted - coarse
-            apart = chosen[i] - (2.0 * fine - wanted)
-            own = noise[2]
-            used[i] = lengths[2]
-        elif stretch[i, scale - 1] >= _CLOSED:
-            openness = stretch[i, scale - 1]
-            chosen[i] = fine
-            apart = fine - wanted
-            own = noise[1]
-            used[i] = lengths[1]
+    """Return tensors, squared error bars and scales; scale -1 where every star has closed."""
+    vertices, count = energy.shape
+    mixed = np.zeros((vertices, 3))
+    square = np.empty(vertices)
+    used = np.empty(vertices)
+    for i in prange(vertices):
+        typical, rest = noise[place[i]], left[place[i]]
+        calibration = _CALIBRATION if place[i] == INTERIOR else _CALIBRATION_AT_RIM
+        errors = np.empty(count)
+        best = np.inf
+        lost = 0.0
+        for j in range(count):
+            errors[j] = _RAW * energy[i, 0]
+            if j > 0:
+                finer, coarser = energy[i, j - 1], energy[i, j]
+                share = min((finer / typical[j - 1] + _OWN) / (1.0 + _OWN), _LOUDEST)
+                bias = max(0.0, coarser - share * typical[j])
+                if j + 1 < count:
+                    growth = max(0.0, energy[i, j + 1] - share * typical[j + 1]) / (bias + 1e-300)
+                    bias /= max(np.sqrt(growth) - 1.0, _SLOWEST) ** 2
+                bias = max(bias, _BIAS * max(0.0, coarser - share * typical[j]))
+                # What the surface loses for good: the part of a band that stands out from the
+                # noise of its class and fades no faster than an edge does, by half a band.
+                fading = typical[j] / typical[j - 1]
+                edge = (coarser - fading * finer) / max(0.5 - fading, 0.25)
+                lost += np.sqrt(max(0.0, min(finer, edge) - _LOUDEST * typical[j - 1]))
+                errors[j] = calibration * share * rest[j] + max(bias, lost * lost)
+                errors[j] += _ROUND**2 * _square(tensors[i, max(j - 2, 1)]) ** 5 * scales[j] ** 8
+            if j > 0 and min(stretch[i, j], stretch[i, j + 1]) < _CLOSED:
+                errors[j] = np.inf
+            errors[j] += floor
+            best = min(best, errors[j])
+        total = square[i] = used[i] = 0.0
+        for j in range(count):
+            if wanted[i] == 0.0:
+                weight = (best / errors[j]) ** _SHARPNESS
+            else:
+                weight = _share_of(scales, j, wanted[i]) if errors[j] < np.inf else 0.0
+            if weight > 0.01:
+                total += weight
+                square[i] += weight * (errors[j] - floor)
+                used[i] += weight * scales[j]
+                for entry in range(3):
+                    mixed[i, entry] += weight * tensors[i, j, entry]
+        if total > 0.0 and not (used[i] == 0.0 and stretch[i, 1] < _CLOSED):
+            square[i] /= total
+            used[i] /= total
+            for entry in range(3):
+                mixed[i, entry] /= total
         else:
-            openness = 1.0
-            chosen[i] = tensors[i, 0]
-            apart = chosen[i]
+            used[i] = -1.0
+            for entry in range(3):
+                mixed[i, entry] = tensors[i, 0, entry]
             # Nothing tells a flat speck from a curved one of the same size.
-            own = np.hypot(noise[0], 1.0 / spacing)
-            used[i] = lengths[0]
-        # The bias left is c s^4 and a quarter of that at the finer scale less, so 4/3 of what the
-        # two differ by; their noise is in it too, which is on the safe side.
-        own /= min(openness, 1.0)
-        bias = 0.5 * (apart[0] ** 2 + apart[2] ** 2) + apart[1] ** 2
-        size = chosen[i, 0] ** 2 + 2.0 * chosen[i, 1] ** 2 + chosen[i, 2] ** 2
-        facets = _FACETS * size * np.sqrt(size) * spacing * spacing
-        square[i] = own * own + _LEFT * _LEFT * bias + facets * facets
-    return chosen, square, used
+            square[i] = energy[i, 0] + _square(tensors[i, 0]) + unknown * unknown
+    return mixed, square, used
+
+
+@compiled()
+def _square(tensor: SingleArray) -> float:
+    """Return (k1^2 + k2^2)/2."""
+    xx, xy, yy = float(tensor[0]), float(tensor[1]), float(tensor[2])
+    return 0.5 * (xx * xx + yy * yy) + xy * xy
+
+
+@compiled()
+def _share_of(scales: FloatArray, j: int, length: float) -> float:
+    """Return the weight of scale j in linear interpolation to a length."""
+    if length <= scales[1]:
+        return 1.0 if j == 1 else 0.0
+    if length >= scales[-1]:
+        return 1.0 if j == len(scales) - 1 else 0.0
+    if j > 0 and scales[j - 1] < length <= scales[j]:
+        return (length - scales[j - 1]) / (scales[j] - scales[j - 1])
+    if j + 1 < len(scales) and scales[j] < length <= scales[j + 1]:
+        return (scales[j + 1] - length) / (scales[j + 1] - scales[j])
+    return 0.0
 
 
 @compiled(parallel=True)
 def _principal(
-    normals: FloatArray, tensors: FloatArray, factor: float
-) -> tuple[FloatArray, FloatArray]:
+    normals: FloatArray, tensors: FloatArray, square: FloatArray, factor: float, facets: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     k = np.empty((2, len(normals)))
     directions = np.empty((2, len(normals), 3))
+    error = np.empty(len(normals))
     for i in prange(len(normals)):
         n = (normals[i, 0], normals[i, 1], normals[i, 2])
         tensor = (factor * tensors[i, 0], factor * tensors[i, 1], factor * tensors[i, 2])
         write_principal(i, n, tensor, k, directions)
-    return k, directions
+        size = 0.5 * (k[0, i] * k[0, i] + k[1, i] * k[1, i])
+        error[i] = np.sqrt(factor * factor * square[i] + facets * facets * size**3)
+    return k, directions, error

@@ -132,3 +132,65 @@ def write_principal(
     for axis in range(3):
         directions[0, at, axis] = c * u[axis] + s * v[axis]
         directions[1, at, axis] = c * v[axis] - s * u[axis]
+
+
+@compiled()
+def in_space(normal: FloatArray, tensor: FloatArray) -> FloatArray:
+    """Return a tangent tensor as one of space, which can be added to those of other planes.
+
+    Parameters
+    ----------
+    normal : ndarray, shape=(3,)
+        Unit normal.
+    tensor : ndarray, shape=(3,)
+        Entries xx, xy, yy in its `tangent_frame`.
+
+    Returns
+    -------
+    ndarray, shape=(6,)
+        Entries xx, xy, xz, yy, yz, zz.
+    """
+    u, v = tangent_frame(normal[0], normal[1], normal[2])
+    out = np.empty(6)
+    at = 0
+    for a in range(3):
+        for b in range(a, 3):
+            out[at] = (
+                tensor[0] * u[a] * u[b]
+                + tensor[1] * (u[a] * v[b] + v[a] * u[b])
+                + tensor[2] * v[a] * v[b]
+            )
+            at += 1
+    return out
+
+
+@compiled()
+def in_tangent_plane(normal: FloatArray, t: FloatArray) -> tuple[float, float, float]:
+    """Return the tangent part of a tensor of space.
+
+    Parameters
+    ----------
+    normal : ndarray, shape=(3,)
+        Unit normal.
+    t : ndarray, shape=(6,)
+        Entries xx, xy, xz, yy, yz, zz.
+
+    Returns
+    -------
+    tuple of float
+        Entries xx, xy, yy in the normal's `tangent_frame`.
+    """
+    u, v = tangent_frame(normal[0], normal[1], normal[2])
+    return _between(t, u, u), _between(t, u, v), _between(t, v, v)
+
+
+@compiled()
+def _between(t: FloatArray, p: Vector, q: Vector) -> float:
+    return (
+        t[0] * p[0] * q[0]
+        + t[1] * (p[0] * q[1] + p[1] * q[0])
+        + t[2] * (p[0] * q[2] + p[2] * q[0])
+        + t[3] * p[1] * q[1]
+        + t[4] * (p[1] * q[2] + p[2] * q[1])
+        + t[5] * p[2] * q[2]
+    )

@@ -28,10 +28,13 @@ class Welded:
         The ready mesh; None if no face of the input has an area.
     index : ndarray of int32, shape=(n,)
         Vertex of `mesh` that stands for each vertex of the input; -1 for one without faces.
+    moved : bool
+        Whether the two number the vertices differently.
     """
 
     mesh: TriangleMesh | None
     index: IndexArray
+    moved: bool
 
     def spread(self, values: AnyArray, missing: AnyArray | float) -> AnyArray:
         """Return values of the ready mesh's vertices as values of the input's vertices.
@@ -48,10 +51,29 @@ class Welded:
         ndarray, shape=(n, ...)
             One value for each vertex of the input, in its order.
         """
-        if self.mesh is not None and len(self.index) == len(self.mesh.vertices):
-            return values  # nothing was merged or dropped: both number the vertices alike
+        if not self.moved:
+            return values
         out = values[self.index]
         out[self.index < 0] = missing
+        return out
+
+    def gather(self, values: FloatArray) -> FloatArray:
+        """Return values of the input's vertices as values of the ready mesh's vertices.
+
+        Parameters
+        ----------
+        values : ndarray, shape=(n,)
+            One value for each vertex of the input.
+
+        Returns
+        -------
+        ndarray, shape=(w,)
+            Where vertices were merged, the value of the last of them.
+        """
+        assert self.mesh is not None
+        out = np.empty(len(self.mesh.vertices))
+        kept = self.index >= 0
+        out[self.index[kept]] = values[kept]
         return out
 
 
@@ -72,7 +94,7 @@ def weld(mesh: TriangleMesh) -> Welded:
     good, used = _good_faces(mesh.vertices, mesh.faces, same)
     kept = int(np.count_nonzero(used))
     if kept == 0:
-        return Welded(None, np.full(len(mesh.vertices), -1, np.int32))
+        return Welded(None, np.full(len(mesh.vertices), -1, np.int32), True)
     if kept == len(used):
         index = np.arange(kept, dtype=np.int32)
         points, faces = mesh.vertices, mesh.faces
@@ -87,7 +109,7 @@ def weld(mesh: TriangleMesh) -> Welded:
         faces = index[mesh.faces]
     if not good.all():
         faces = faces[good]
-    return Welded(TriangleMesh.trusted(_centred(points), faces), index)
+    return Welded(TriangleMesh.trusted(_centred(points), faces), index, kept != len(used))
 
 
 @compiled(parallel=True)

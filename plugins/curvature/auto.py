@@ -1,33 +1,49 @@
-"""Co-smoothing at the length that the mesh's own noise and detail call for."""
+"""Co-smoothing, each vertex at the length that its own noise and detail call for."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
+import numpy as np
+
+from lutcore.arrays import FloatArray
 from lutcore.cosmoothing import smooth, surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.mesh import TriangleMesh
-from lutcore.progress import Progress, part, tell
-from lutcore.scale import best_scale
+from lutcore.parameters import param
+from lutcore.progress import Progress, part
+from lutcore.scale import rungs, rungs_for
 from lutcore.selection import select
 
 
 @estimator_registry.register("auto")
 @dataclass(frozen=True)
 class Auto(EstimatorParameters):
-    """Co-smoothing at one scale for the whole mesh, chosen by noise and bias.
+    """Co-smoothing over many scales in one recurrence, the scale chosen vertex by vertex.
 
-    The scale is the one of a ladder at which the mean over nearly all vertices of noise squared
-    plus bias squared is least. A given scale is used as it is.
+    Each vertex takes the scales at which its noise and its bias, squared, are least together;
+    both are read off the mesh. Where even the finest scale is precise enough, that is taken.
+    A given scale is used as it is.
     """
 
+    per_vertex: ClassVar[bool] = True
+
+    precision: float = param(
+        0.002,
+        0.0,
+        1.0,
+        "",
+        "Error, as a share of the typical curvature, that is small enough to smooth no more.",
+    )
+
     def estimate(
-        self, mesh: TriangleMesh, scale: float | None, progress: Progress
+        self, mesh: TriangleMesh, scale: float | FloatArray | None, progress: Progress
     ) -> PrincipalCurvatures:
         """Estimate the principal curvatures; see `lutcore.curvature.Estimator`."""
-        tell(progress, 0.0, "reading the neighbourhoods")
-        on = surface(mesh)
-        length = best_scale(on, part(progress, 0.1, 0.4)) if scale is None else scale
-        ladder = (length / 2.0**0.5, length, length * 2.0**0.5)
-        smoothed = smooth(on, ladder, 1, part(progress, 0.4, 0.9))
-        tell(progress, 0.9, "fitting")
-        return select(on, smoothed)
+        on = surface(mesh, part(progress, 0.0, 0.2))
+        if scale is None:
+            scales = rungs(on, mesh.diagonal, self.precision, part(progress, 0.2, 0.3))
+        else:
+            scales = rungs_for(np.ravel(scale))
+        smoothed = smooth(on, scales.tolist(), len(scales) // 2, part(progress, 0.3, 0.8))
+        return select(on, smoothed, scale, self.precision, part(progress, 0.8, 1.0))

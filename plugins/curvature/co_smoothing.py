@@ -1,14 +1,17 @@
 """Curvature of positions and normals smoothed alike, at a given length."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from lutcore.arrays import FloatArray
 from lutcore.cosmoothing import smooth, surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.mesh import TriangleMesh
-from lutcore.progress import Progress, part, tell
+from lutcore.progress import Progress, part
+from lutcore.scale import rungs_for
 from lutcore.selection import select
 
 # Without a scale: enough to hide 1 % noise, little enough to keep features of ten edges.
@@ -18,22 +21,22 @@ _DEFAULT_SPACINGS = 4.0
 @estimator_registry.register("co-smoothing")
 @dataclass(frozen=True)
 class CoSmoothing(EstimatorParameters):
-    """Shape operator of positions and normals that went through one diffusion.
+    """Shape operator of positions and normals that went through one low-pass filter.
 
-    The scale is the standard deviation of the smoothing; without one it is four times the square
-    root of the median vertex area. The bias of order scale squared is extrapolated away from a
-    second scale. The error bar adds the noise seen in the mesh, carried through the smoothing,
-    and what still changes from scale to scale.
+    The scale is the standard deviation of the Gaussian that would suppress as much noise, one for
+    all vertices or one for each; without one it is four times the square root of the median vertex
+    area. Features sharper than the scale are rounded. The error bar adds the noise seen in the
+    mesh, carried through the smoothing, and what still changes from scale to scale.
     """
 
+    per_vertex: ClassVar[bool] = True
+
     def estimate(
-        self, mesh: TriangleMesh, scale: float | None, progress: Progress
+        self, mesh: TriangleMesh, scale: float | FloatArray | None, progress: Progress
     ) -> PrincipalCurvatures:
         """Estimate the principal curvatures; see `lutcore.curvature.Estimator`."""
-        tell(progress, 0.0, "reading the neighbourhoods")
-        on = surface(mesh)
+        on = surface(mesh, part(progress, 0.0, 0.2))
         length = _DEFAULT_SPACINGS * on.spacing if scale is None else scale
-        ladder = length * np.sqrt(2.0) ** np.array([-1.0, 0.0, 1.0])
-        smoothed = smooth(on, ladder.tolist(), base=1, progress=part(progress, 0.1, 0.9))
-        tell(progress, 0.9, "fitting")
-        return select(on, smoothed)
+        scales = rungs_for(np.ravel(length))
+        smoothed = smooth(on, scales.tolist(), len(scales) // 2, part(progress, 0.2, 0.8))
+        return select(on, smoothed, length, progress=part(progress, 0.8, 1.0))

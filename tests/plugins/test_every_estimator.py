@@ -130,7 +130,8 @@ def test_curvature_is_one_over_length(method, factor):
     limit = 2e-4 * np.abs(before.k1).max()
     assert_allclose(factor * after.k1, before.k1, atol=limit)
     assert_allclose(factor * after.k2, before.k2, atol=limit)
-    assert_allclose(np.median(after.scale), factor * np.median(before.scale), rtol=1e-9)
+    # A scale chosen by weights inherits the rounding of single precision.
+    assert_allclose(np.median(after.scale), factor * np.median(before.scale), rtol=1e-5)
 
 
 def test_flipped_faces_negate(method):

@@ -1,0 +1,187 @@
+"""What curvature gains or loses from one scale to the next, and how much of it is noise.
+
+Band j of a vertex is the difference of its shape operators at scales j and j + 1. Noise fills the
+fine bands and fades towards the coarse ones; the bias of smoothing grows with the scale.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.cosmoothing import Smoothed, Surface
+from lutcore.lowpass import SingleArray
+from lutcore.tensors import principal
+
+# Rings from the rim where a new class of vertices begins; beyond the last, the interior. Near a
+# rim noise is averaged along the rim alone and fades more slowly with the scale.
+_RINGS = np.array([1, 2, 3, 5, 8, 12])
+INTERIOR = len(_RINGS)
+"""The class of vertices that no rim is near to."""
+# Classes of fewer vertices are judged as the interior.
+_LEAST_CLASS = 30
+# Passes over one-rings that average the energies: a Gaussian of two spacings.
+_PASSES = 8
+# Vertices that vote on the noise of a class.
+_VOTERS = 100_000
+# Up to this many spacings a rise from band to band may be noise that is correlated over some
+# vertices; from there on noise fades, by at least this factor a band (white noise: 8), or it would
+# be the bias that is taken for noise.
+_CORRELATED, _FADING, _FADING_AT_RIM = 2.5, 5.0, 2.5
+
+
+class Bands(NamedTuple):
+    """The bands of a mesh.
+
+    Parameters
+    ----------
+    energy : ndarray of float32, shape=(n, S)
+        Mean square of a principal curvature's change from each scale to the next, averaged over
+        the neighbourhood, 1/mesh unit squared.
+    place : ndarray of int8, shape=(n,)
+        Class of each vertex by its distance from the rim.
+    noise : ndarray, shape=(INTERIOR + 1, S)
+        The part of a class's energy that is noise.
+    left : ndarray, shape=(INTERIOR + 1, S)
+        Noise of the curvature itself at each scale: that of its band and of all coarser ones.
+    """
+
+    energy: SingleArray
+    place: NDArray[np.int8]
+    noise: FloatArray
+    left: FloatArray
+
+
+def bands(on: Surface, smoothed: Smoothed) -> Bands:
+    """Return the bands of a smoothed mesh.
+
+    Parameters
+    ----------
+    on : Surface
+        The mesh.
+    smoothed : Smoothed
+        It, smoothed, at three scales or more beside 0.
+
+    Returns
+    -------
+    Bands
+        One band fewer than there are scales.
+    """
+    start, neighbour = on.operator.start, on.operator.neighbour
+    middle = len(smoothed.scales) // 2
+    energy = _energies(smoothed.tensors, middle)
+    spare = np.empty_like(energy)
+    for _ in range(_PASSES):
+        _average(start, neighbour, energy, spare)
+        energy, spare = spare, energy
+    place = _places(start, neighbour, on.operator.rim)
+    noise = _noise(energy, place, np.array(smoothed.scales) / on.spacing)
+    # Beyond the last band the noise goes on fading as it did between the last two.
+    ratio = np.clip(noise[:, -1] / noise[:, -2], 0.1, 0.6)
+    left = (
+        np.cumsum(noise[:, ::-1], axis=1)[:, ::-1] + (noise[:, -1] * ratio / (1 - ratio))[:, None]
+    )
+    return Bands(energy, place, noise, left)
+
+
+def _noise(energy: SingleArray, place: NDArray[np.int8], spacings: FloatArray) -> FloatArray:
+    """Return the typical energy of each class, without what must be bias."""
+    count = energy.shape[1]
+    everywhere = _typical(energy)
+    noise = np.tile(everywhere, (INTERIOR + 1, 1))
+    for kind in (INTERIOR, *range(INTERIOR)):
+        members = np.flatnonzero(place == kind)
+        if len(members) >= _LEAST_CLASS:
+            noise[kind] = _typical(energy[members[:: 1 + len(members) // _VOTERS]])
+        elif kind != INTERIOR:
+            noise[kind] = noise[INTERIOR]
+    fading = np.full(INTERIOR + 1, _FADING_AT_RIM)
+    fading[INTERIOR] = _FADING
+    for band in range(1, count):
+        if spacings[band] > _CORRELATED:
+            noise[:, band] = np.minimum(noise[:, band], noise[:, band - 1] / fading)
+    return np.maximum(noise, 1e-30)
+
+
+def _typical(energy: SingleArray) -> FloatArray:
+    """Return the mean of what is not far above the median: features are not noise."""
+    voters = energy[:: 1 + len(energy) // _VOTERS].astype(np.float64)
+    counted = voters <= 5.0 * np.median(voters, axis=0)
+    mean: FloatArray = (voters * counted).sum(axis=0) / counted.sum(axis=0)
+    return mean
+
+
+@compiled(parallel=True)
+def _energies(tensors: SingleArray, middle: int) -> SingleArray:
+    """Return half the squared change of k1 and k2 from each scale to the next.
+
+    To first order k1 and k2 change by the entries of the difference on the diagonal of the
+    principal frame, and by the one off it only where k1 and k2 are closer than it is large.
+    """
+    count, scales = tensors.shape[0], tensors.shape[1] - 1
+    energy = np.empty((count, scales), np.float32)
+    for i in prange(count):
+        k1, k2, c, s = principal(
+            tensors[i, middle, 0], tensors[i, middle, 1], tensors[i, middle, 2]
+        )
+        gap = (k1 - k2) ** 2
+        cosine, sine = c * c - s * s, 2.0 * c * s
+        for band in range(scales):
+            xx = tensors[i, band, 0] - tensors[i, band + 1, 0]
+            xy = tensors[i, band, 1] - tensors[i, band + 1, 1]
+            yy = tensors[i, band, 2] - tensors[i, band + 1, 2]
+            mean, half = 0.5 * (xx + yy), 0.5 * (xx - yy)
+            along = cosine * half + sine * xy
+            across = cosine * xy - sine * half
+            size = 4.0 * (along * along + across * across)
+            mixed = size / (gap + size + 1e-300)
+            energy[i, band] = mean * mean + along * along + mixed * across * across
+    return energy
+
+
+@compiled(parallel=True)
+def _average(
+    start: IndexArray, neighbour: IndexArray, values: SingleArray, out: SingleArray
+) -> None:
+    """Write the mean of each vertex and its neighbours."""
+    for i in prange(len(values)):
+        share = np.float32(1.0) / np.float32(1 + start[i + 1] - start[i])
+        for band in range(values.shape[1]):
+            total = values[i, band]
+            for at in range(start[i], start[i + 1]):
+                total += values[neighbour[at], band]
+            out[i, band] = share * total
+
+
+def _places(start: IndexArray, neighbour: IndexArray, rim: BoolArray) -> NDArray[np.int8]:
+    """Return the class of each vertex: its ring from the rim, in steps."""
+    if not rim.any():
+        return np.full(len(rim), INTERIOR, np.int8)
+    rings = _rings_from(start, neighbour, np.flatnonzero(rim).astype(np.int32), int(_RINGS[-1]))
+    return np.searchsorted(_RINGS, rings, side="right").astype(np.int8)
+
+
+@compiled()
+def _rings_from(
+    start: IndexArray, neighbour: IndexArray, seeds: IndexArray, farthest: int
+) -> NDArray[np.int16]:
+    """Return in which ring around the seeds each vertex lies; `farthest` for all beyond."""
+    ring = np.full(len(start) - 1, farthest, np.int16)
+    front = seeds
+    for seed in seeds:
+        ring[seed] = 0
+    for distance in range(1, farthest):
+        reached = np.empty(len(ring), np.int32)
+        found = 0
+        for vertex in front:
+            for at in range(start[vertex], start[vertex + 1]):
+                other = neighbour[at]
+                if ring[other] == farthest:
+                    ring[other] = distance
+                    reached[found] = other
+                    found += 1
+        front = reached[:found].copy()
+    return ring

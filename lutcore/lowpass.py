@@ -1,0 +1,227 @@
+"""Smoothing of fields over a mesh to several scales at once, by polynomials of its Laplacian.
+
+A scale's filter is the polynomial p(L) that, of all of its degree, passes the least noise of
+curvature and leaves quadratics of the surface alone: p(0) = 1 and p'(0) = 0. Truncated Gaussians
+need twice to three times the products with L for the same effect.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from lutcore.arrays import FloatArray
+from lutcore.compiled import compiled
+from lutcore.laplacian import Laplacian
+from lutcore.progress import Progress, silent, tell
+
+SingleArray = NDArray[np.float32]
+_Unsigned = NDArray[np.uint32]
+FIELDS = 6
+"""Fields smoothed together: three of positions and three of normals, or a tensor's six."""
+
+_TWO = np.float32(2.0)
+# Filters of lower degree cannot fulfil both conditions with something to spare.
+_LEAST_DEGREE, _LARGEST_DEGREE = 3, 40_000
+
+
+def low_pass(
+    operator: Laplacian,
+    fields: FloatArray,
+    scales: Sequence[float],
+    progress: Progress = silent,
+) -> SingleArray:
+    """Return how far smoothing moves the fields, (p_s(L) - 1) f for each scale s.
+
+    The recurrence runs on L f rather than on f: what it carries is as small as the change it
+    computes, so single precision loses nothing, however far the mesh extends.
+
+    Parameters
+    ----------
+    operator : Laplacian
+        The Laplacian L.
+    fields : ndarray, shape=(n, 6)
+        The fields f.
+    scales : sequence of float
+        Standard deviations of the Gaussians that would let through as much noise of curvature,
+        mesh units. Below what the lowest degree gives, that is taken.
+    progress : callable
+        Told where the work stands.
+
+    Returns
+    -------
+    ndarray of float32, shape=(n, S, 6)
+        The changes, scale by scale.
+
+    References
+    ----------
+    D. Hammond, P. Vandergheynst, R. Gribonval, Wavelets on graphs via spectral graph theory,
+    Appl. Comput. Harmon. Anal. 30, 2011, section 6 (the recurrence).
+    """
+    series = [_series(scale, operator.bound) for scale in scales]
+    terms = max(len(one) for one in series)
+    weights = np.zeros((terms, len(scales)), np.float32)
+    for column, one in enumerate(series):
+        weights[: len(one), column] = one
+    # Unsigned: compiled loops need not ask whether an index counts from the end.
+    links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
+    before = _apply(*links, fields, 0.5 * operator.bound)
+    change = np.empty((len(before), len(scales), FIELDS), np.float32)
+    _begin(before, weights[0], change)
+    now = np.zeros_like(before)
+    _step(*links, before, now, change, weights[1], np.float32(0.5))
+    for term in range(2, terms):
+        if term % 8 == 0:
+            tell(progress, term / terms, "smoothing")
+        _step(*links, now, before, change, weights[term], np.float32(1.0))
+        now, before = before, now
+    return change
+
+
+def degree(scale: float, bound: float) -> int:
+    """Return how many products with the Laplacian a scale takes.
+
+    Parameters
+    ----------
+    scale : float
+        The scale, mesh units.
+    bound : float
+        The Laplacian's, 1/mesh unit squared.
+
+    Returns
+    -------
+    int
+        The least degree of a filter that smooths that much.
+    """
+    strengths = _strengths()
+    return min(int(np.searchsorted(strengths, 0.5 * scale * scale * bound)), len(strengths) - 1)
+
+
+@lru_cache(maxsize=1)
+def _strengths() -> FloatArray:
+    """Return, for each degree, t bound of the Gaussian exp(-t L) that passes as much noise.
+
+    White noise of the vertices becomes noise of curvature through L p(L), and eigenvalues lie
+    evenly below some bound, so the variance is I = int y^2 p^2 dy with y = L/bound; for the
+    Gaussian it is 1/(4 (t bound)^3). The least I under p(0) = 1, p'(0) = 0 is an entry of the
+    inverse of the Gram matrix of those two conditions, written in the Jacobi polynomials that
+    are orthonormal under y^2.
+    """
+    k = np.arange(_LARGEST_DEGREE + 1.0)
+    value = np.sqrt(2.0 * k + 3.0) * 0.5 * (k + 1.0) * (k + 2.0)
+    slope = -value * k * (k + 3.0) / 3.0
+    both, across, slopes = (np.cumsum(term) for term in (value**2, value * slope, slope**2))
+    with np.errstate(divide="ignore", invalid="ignore"):  # degree 0 has no slope
+        inverse = both - across**2 / slopes
+    strength = np.cbrt(inverse / 4.0)
+    strength[:_LEAST_DEGREE] = 0.0
+    return strength
+
+
+def _filter(degree_: int, y: FloatArray) -> FloatArray:
+    """Return the filter of a degree at y = L/bound.
+
+    Orthogonal under y^4 to all of degree K - 2 and less, so a J_K + (1 - a) J_(K-1) with Jacobi
+    polynomials J normalised to 1 at 0; their slope there is -K (K + 5)/5.
+    """
+    from scipy.special import binom, eval_jacobi
+
+    k = degree_
+    share = -(k - 1.0) * (k + 4.0) / (2.0 * k + 4.0)
+    high, low = (
+        eval_jacobi(d, 4.0, 0.0, 1.0 - 2.0 * y) / binom(d + 4.0, float(d)) for d in (k, k - 1)
+    )
+    values: FloatArray = share * high + (1.0 - share) * low
+    return values
+
+
+def _series(scale: float, bound: float) -> FloatArray:
+    """Return the Chebyshev coefficients of (p(L) - 1)/L on 0 <= L <= bound."""
+    from scipy.fft import dct
+
+    strength = 0.5 * scale * scale * bound
+    k = max(degree(scale, bound), _LEAST_DEGREE)
+    # Degrees are whole numbers: a bound that is larger by as much makes the scale exact.
+    ample = bound * max(1.0, float(_strengths()[k]) / strength)
+    size = 2 * k
+    angle = np.pi * (np.arange(size) + 0.5) / size
+    x = 0.5 * bound * (1.0 + np.cos(angle))
+    coefficients = dct((_filter(k, x / ample) - 1.0) / x, type=2) / size
+    coefficients[0] *= 0.5
+    return coefficients[:k]
+
+
+@compiled(parallel=True)
+def _begin(values: SingleArray, weight: SingleArray, change: SingleArray) -> None:
+    for i in prange(len(values)):
+        for scale in range(len(weight)):
+            for field in range(FIELDS):
+                change[i, scale, field] = weight[scale] * values[i, field]
+
+
+@compiled(parallel=True)
+def _apply(
+    start: _Unsigned, neighbour: _Unsigned, rate: SingleArray, f: FloatArray, factor: float
+) -> SingleArray:
+    out = np.empty(f.shape, np.float32)
+    for i in prange(len(start) - 1):
+        s0 = s1 = s2 = s3 = s4 = s5 = 0.0
+        for at in range(start[i], start[i + 1]):
+            j, w = neighbour[at], factor * rate[at]
+            s0 += w * (f[i, 0] - f[j, 0])
+            s1 += w * (f[i, 1] - f[j, 1])
+            s2 += w * (f[i, 2] - f[j, 2])
+            s3 += w * (f[i, 3] - f[j, 3])
+            s4 += w * (f[i, 4] - f[j, 4])
+            s5 += w * (f[i, 5] - f[j, 5])
+        out[i, 0], out[i, 1], out[i, 2] = s0, s1, s2
+        out[i, 3], out[i, 4], out[i, 5] = s3, s4, s5
+    return out
+
+
+@compiled(parallel=True, packed=True)
+def _step(
+    start: _Unsigned,
+    neighbour: _Unsigned,
+    rate: SingleArray,
+    now: SingleArray,
+    before: SingleArray,
+    change: SingleArray,
+    weight: SingleArray,
+    half: np.float32,
+) -> None:
+    """Replace T_{k-1} by T_{k+1} = 2 x T_k - T_{k-1} and add its share to every scale."""
+    double = _TWO * half
+    keep = double - np.float32(1.0)
+    for i in prange(len(start) - 1):
+        r = np.float32(0.0)
+        s0 = s1 = s2 = s3 = s4 = s5 = np.float32(0.0)
+        for at in range(start[i], start[i + 1]):
+            j, w = neighbour[at], rate[at]
+            r += w
+            s0 += w * now[j, 0]
+            s1 += w * now[j, 1]
+            s2 += w * now[j, 2]
+            s3 += w * now[j, 3]
+            s4 += w * now[j, 4]
+            s5 += w * now[j, 5]
+        r -= np.float32(1.0)
+        t0 = double * (r * now[i, 0] - s0) - keep * before[i, 0]
+        t1 = double * (r * now[i, 1] - s1) - keep * before[i, 1]
+        t2 = double * (r * now[i, 2] - s2) - keep * before[i, 2]
+        t3 = double * (r * now[i, 3] - s3) - keep * before[i, 3]
+        t4 = double * (r * now[i, 4] - s4) - keep * before[i, 4]
+        t5 = double * (r * now[i, 5] - s5) - keep * before[i, 5]
+        before[i, 0], before[i, 1], before[i, 2] = t0, t1, t2
+        before[i, 3], before[i, 4], before[i, 5] = t3, t4, t5
+        for scale in range(len(weight)):
+            c = weight[scale]
+            if c != np.float32(0.0):
+                change[i, scale, 0] += c * t0
+                change[i, scale, 1] += c * t1
+                change[i, scale, 2] += c * t2
+                change[i, scale, 3] += c * t3
+                change[i, scale, 4] += c * t4
+                change[i, scale, 5] += c * t5
