@@ -27,10 +27,14 @@ _LEAST_CLASS = 30
 _PASSES = 8
 # Vertices that vote on the noise of a class.
 _VOTERS = 100_000
-# Up to this many spacings a rise from band to band may be noise that is correlated over some
-# vertices; from there on noise fades, by at least this factor a band (white noise: 8), or it would
-# be the bias that is taken for noise.
-_CORRELATED, _FADING, _FADING_AT_RIM = 2.5, 5.0, 2.5
+# The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
+# here, the 25th percentile is this share of the mean.
+_QUARTER, _QUARTER_OF_MEAN = 25.0, 0.7
+# Noise is alike everywhere: of pure noise the 75th percentile is 1.6 to 2.2 times the 25th. Where
+# it is more, and at more spacings than neighbours' noise may be correlated over, energy that does
+# not fade from band to band by at least this factor (white noise: 4 to 8) is not noise.
+_ALIKE, _CORRELATED = 3.0, 4.1
+_FADING, _FADING_AT_RIM = 4.0, 2.5
 
 
 class Bands(NamedTuple):
@@ -88,30 +92,29 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
 
 
 def _noise(energy: SingleArray, place: NDArray[np.int8], spacings: FloatArray) -> FloatArray:
-    """Return the typical energy of each class, without what must be bias."""
-    count = energy.shape[1]
-    everywhere = _typical(energy)
-    noise = np.tile(everywhere, (INTERIOR + 1, 1))
+    """Return the part of each class's energy that is noise."""
+    noise = np.empty((INTERIOR + 1, energy.shape[1]))
     for kind in (INTERIOR, *range(INTERIOR)):
         members = np.flatnonzero(place == kind)
         if len(members) >= _LEAST_CLASS:
-            noise[kind] = _typical(energy[members[:: 1 + len(members) // _VOTERS]])
-        elif kind != INTERIOR:
+            voters = energy[members[:: 1 + len(members) // _VOTERS]]
+        elif kind == INTERIOR:
+            voters = energy
+        else:
             noise[kind] = noise[INTERIOR]
-    fading = np.full(INTERIOR + 1, _FADING_AT_RIM)
-    fading[INTERIOR] = _FADING
-    for band in range(1, count):
-        if spacings[band] > _CORRELATED:
-            noise[:, band] = np.minimum(noise[:, band], noise[:, band - 1] / fading)
+            continue
+        noise[kind] = _faded(voters, spacings, _FADING if kind == INTERIOR else _FADING_AT_RIM)
     return np.maximum(noise, 1e-30)
 
 
-def _typical(energy: SingleArray) -> FloatArray:
-    """Return the mean of what is not far above the median: features are not noise."""
-    voters = energy[:: 1 + len(energy) // _VOTERS].astype(np.float64)
-    counted = voters <= 5.0 * np.median(voters, axis=0)
-    mean: FloatArray = (voters * counted).sum(axis=0) / counted.sum(axis=0)
-    return mean
+def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArray:
+    """Return the noise in the bands of one class."""
+    quiet, loud = np.percentile(voters, (_QUARTER, 100.0 - _QUARTER), axis=0)
+    noise = quiet / _QUARTER_OF_MEAN
+    for band in range(1, len(noise)):
+        if loud[band] > _ALIKE * quiet[band] or spacings[band] > _CORRELATED:
+            noise[band] = min(noise[band], noise[band - 1] / fading)
+    return noise
 
 
 @compiled(parallel=True)

@@ -21,6 +21,9 @@ from lutcore.progress import Progress, part, silent, tell
 from lutcore.stars import stars
 from lutcore.tensors import symmetric_fit, tangent_frame
 
+# A star narrower than this, in spacings, is a point to single precision.
+_POINT = 1e-4
+
 
 @dataclass(frozen=True)
 class Surface:
@@ -54,7 +57,8 @@ class Smoothed:
     tensors : ndarray of float32, shape=(n, S, 3)
         Entries xx, xy, yy of the shape operator, 1/mesh unit.
     stretch : ndarray of float32, shape=(n, S)
-        How far smoothing left the star open: the ratio of its least extent to that before.
+        How far smoothing left the star open: the ratio of its least extent to that before; 0 for
+        one that is no more than a point.
     """
 
     scales: tuple[float, ...]
@@ -111,14 +115,19 @@ def smooth(
     change = low_pass(on.operator, on.fields, scales, part(progress, 0.0, 0.7))
     tell(progress, 0.7, "fitting shape operators")
     normals, tensors, stretch = _tensors(
-        on.operator.start, on.operator.neighbour, on.fields, change, base
+        on.operator.start, on.operator.neighbour, on.fields, change, base, _POINT * on.spacing
     )
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
 
 @compiled(parallel=True)
 def _tensors(
-    start: IndexArray, neighbour: IndexArray, fields: FloatArray, change: SingleArray, base: int
+    start: IndexArray,
+    neighbour: IndexArray,
+    fields: FloatArray,
+    change: SingleArray,
+    base: int,
+    point: float,
 ) -> tuple[FloatArray, SingleArray, SingleArray]:
     count, scales = change.shape[0], change.shape[1]
     normals = np.empty((count, 3))
@@ -154,6 +163,9 @@ def _tensors(
             if scale == 0:
                 open_before = max(least, 1e-12 * (cxx + cyy))
             stretch[i, scale] = np.sqrt(max(least, 0.0) / open_before)
+            if cxx + cyy < point * point:
+                stretch[i, scale] = 0.0
+                cxx = cxy = cyy = 0.0
             s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)
             tensors[i, scale, 0], tensors[i, scale, 1], tensors[i, scale, 2] = s
     return normals, tensors, stretch

@@ -16,7 +16,7 @@ from lutcore.tensors import in_space, in_tangent_plane
 
 # Scale of the averaging, in spacings. It is left out where the fit itself was made at less than
 # the first of the two, and full from the second on.
-_SCALE, _FROM, _FULL = 1.5, 1.0, 2.5
+_SCALE, _FROM, _FULL = 1.2, 1.0, 2.5
 # Share of the squared change that stays as error.
 _STAYS = 0.1
 

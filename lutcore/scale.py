@@ -53,7 +53,13 @@ def shading_scale(mesh: TriangleMesh, glow: float) -> float:
     return max(min(glow, _LONGEST * welded.diagonal), _SHADING * typical_spacing(welded))
 
 
-def rungs(on: Surface, extent: float, precision: float, progress: Progress = silent) -> FloatArray:
+def rungs(
+    on: Surface,
+    extent: float,
+    precision: float,
+    steadiness: float,
+    progress: Progress = silent,
+) -> FloatArray:
     """Return the scales among which each vertex of a mesh should choose.
 
     Parameters
@@ -62,7 +68,7 @@ def rungs(on: Surface, extent: float, precision: float, progress: Progress = sil
         The mesh.
     extent : float
         Its diagonal, mesh units.
-    precision : float
+    precision, steadiness : float
         As in `select`.
     progress : callable
         Told where the work stands.
@@ -78,7 +84,8 @@ def rungs(on: Surface, extent: float, precision: float, progress: Progress = sil
     if len(on.fields) <= _WHOLE:
         return every
     part, inner = patches(on)
-    found = select(part, smooth(part, every.tolist(), count // 2, progress), precision=precision)
+    smoothed = smooth(part, every.tolist(), count // 2, progress)
+    found = select(part, smoothed, None, precision, steadiness)
     low, high = np.percentile(np.asarray(found.scale)[inner], _LEFT_OUT)
     # A scale is judged by the change to the next, so that one has to be there too.
     first = max(0, int(np.searchsorted(every, low * 1.001)) - 1)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
 from lutcore.bands import INTERIOR, bands
-from lutcore.collapse import mend
+from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
 from lutcore.curvature import PrincipalCurvatures
@@ -32,7 +32,9 @@ _ROUND = 0.3
 _SHARPNESS = 4
 # Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
 # vertices of noisy surfaces; near rims neighbours err alike and more.
-_CALIBRATION, _CALIBRATION_AT_RIM = 0.75, 1.5
+_CALIBRATION, _CALIBRATION_AT_RIM = 0.65, 1.5
+# Classes of vertices near a rim, which take over what inner vertices know better.
+_RIM = 3
 # A polyhedron is off by this times k^3 spacing^2 at any scale, as on a clean regular torus.
 _FACETS = 0.2
 
@@ -66,6 +68,7 @@ def select(
     smoothed: Smoothed,
     lengths: FloatArray | float | None = None,
     precision: float = 0.0,
+    steadiness: float = 1.0,
     progress: Progress = silent,
 ) -> PrincipalCurvatures:
     """Return the curvatures at each vertex's own scale.
@@ -81,6 +84,8 @@ def select(
         and bias together.
     precision : float
         Error, as a share of the typical curvature, below which the finer scale is taken.
+    steadiness : float
+        How much squared noise counts against squared bias in the choice of scales.
     progress : callable
         Told where the work stands.
 
@@ -102,10 +107,12 @@ def select(
         scales,
         wanted,
         precision * precision * size,
+        steadiness,
         1.0 / on.spacing,
     )
     links = (on.operator.start, on.operator.neighbour)
-    mend(*links, smoothed.normals, np.flatnonzero(used < 0.0).astype(np.int32), tensors, square)
+    weak = np.flatnonzero((used < 0.0) | (found.place <= _RIM)).astype(np.int32)
+    borrow(*links, smoothed.normals, weak, used[weak] < 0.0, tensors, square)
     np.maximum(used, 0.0, out=used)
     tell(progress, 0.6, "joining scales")
     refined(on, smoothed.normals, used, tensors, square)
@@ -136,6 +143,7 @@ def _mix(
     scales: FloatArray,
     wanted: FloatArray,
     floor: float,
+    steadiness: float,
     unknown: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return tensors, squared error bars and scales; scale -1 where every star has closed."""
@@ -147,13 +155,19 @@ def _mix(
         typical, rest = noise[place[i]], left[place[i]]
         calibration = _CALIBRATION if place[i] == INTERIOR else _CALIBRATION_AT_RIM
         errors = np.empty(count)
+        costs = np.empty(count)
         best = np.inf
         lost = 0.0
         for j in range(count):
-            errors[j] = _RAW * energy[i, 0]
-            if j > 0:
+            # A neighbourhood is as noisy as the band that is finer by one tells.
+            band = max(j - 1, 0)
+            share = min((energy[i, band] / typical[band] + _OWN) / (1.0 + _OWN), _LOUDEST)
+            heard = calibration * share * rest[j]
+            if j == 0:
+                errors[j] = max(_RAW * energy[i, 0], heard)
+                costs[j] = steadiness * errors[j]
+            else:
                 finer, coarser = energy[i, j - 1], energy[i, j]
-                share = min((finer / typical[j - 1] + _OWN) / (1.0 + _OWN), _LOUDEST)
                 bias = max(0.0, coarser - share * typical[j])
                 if j + 1 < count:
                     growth = max(0.0, energy[i, j + 1] - share * typical[j + 1]) / (bias + 1e-300)
@@ -164,21 +178,23 @@ def _mix(
                 fading = typical[j] / typical[j - 1]
                 edge = (coarser - fading * finer) / max(0.5 - fading, 0.25)
                 lost += np.sqrt(max(0.0, min(finer, edge) - _LOUDEST * typical[j - 1]))
-                errors[j] = calibration * share * rest[j] + max(bias, lost * lost)
-                errors[j] += _ROUND**2 * _square(tensors[i, max(j - 2, 1)]) ** 5 * scales[j] ** 8
-            if j > 0 and min(stretch[i, j], stretch[i, j + 1]) < _CLOSED:
-                errors[j] = np.inf
-            errors[j] += floor
-            best = min(best, errors[j])
+                errors[j] = heard + max(bias, lost * lost)
+                size = _square(tensors[i, max(j - 2, 1)])
+                errors[j] += min(_ROUND**2 * (size * scales[j] ** 2) ** 4, 100.0) * size
+                costs[j] = errors[j] + (steadiness - 1.0) * heard
+            if stretch[i, j] < _CLOSED or (j > 0 and stretch[i, j + 1] < _CLOSED):
+                errors[j] = costs[j] = np.inf
+            costs[j] += floor
+            best = min(best, costs[j])
         total = square[i] = used[i] = 0.0
         for j in range(count):
             if wanted[i] == 0.0:
-                weight = (best / errors[j]) ** _SHARPNESS
+                weight = (best / costs[j]) ** _SHARPNESS
             else:
                 weight = _share_of(scales, j, wanted[i]) if errors[j] < np.inf else 0.0
             if weight > 0.01:
                 total += weight
-                square[i] += weight * (errors[j] - floor)
+                square[i] += weight * errors[j]
                 used[i] += weight * scales[j]
                 for entry in range(3):
                     mixed[i, entry] += weight * tensors[i, j, entry]

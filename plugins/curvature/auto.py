@@ -36,14 +36,24 @@ class Auto(EstimatorParameters):
         "Error, as a share of the typical curvature, that is small enough to smooth no more.",
     )
 
+    steadiness: float = param(
+        2.0,
+        1.0,
+        1e6,
+        "",
+        "How much noise counts against lost detail, both squared, in the choice of scales.",
+    )
+
     def estimate(
         self, mesh: TriangleMesh, scale: float | FloatArray | None, progress: Progress
     ) -> PrincipalCurvatures:
         """Estimate the principal curvatures; see `lutcore.curvature.Estimator`."""
         on = surface(mesh, part(progress, 0.0, 0.2))
         if scale is None:
-            scales = rungs(on, mesh.diagonal, self.precision, part(progress, 0.2, 0.3))
+            told = part(progress, 0.2, 0.3)
+            scales = rungs(on, mesh.diagonal, self.precision, self.steadiness, told)
         else:
             scales = rungs_for(np.ravel(scale))
         smoothed = smooth(on, scales.tolist(), len(scales) // 2, part(progress, 0.3, 0.8))
-        return select(on, smoothed, scale, self.precision, part(progress, 0.8, 1.0))
+        told = part(progress, 0.8, 1.0)
+        return select(on, smoothed, scale, self.precision, self.steadiness, told)

@@ -129,7 +129,7 @@ def test_a_large_mesh_tries_only_the_scales_that_its_patches_chose(monkeypatch):
     whole = principal_curvatures(mesh)
     monkeypatch.setattr("lutcore.scale._WHOLE", 50_000)
     on = surface(mesh)
-    few = rungs(on, mesh.diagonal, 0.002)
+    few = rungs(on, mesh.diagonal, 0.002, 4.0)
     assert len(few) < 7
     sampled = principal_curvatures(mesh)
     size = np.sqrt(np.mean(exact.truth.k1**2 + exact.truth.k2**2))

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
-from lutcore.analytic import sphere, torus
+from lutcore.analytic import ellipsoid, sphere, torus
+from lutcore.cosmoothing import surface
 from lutcore.errors import ParameterError
 from lutcore.estimation import principal_curvatures
+from lutcore.lowpass import low_pass
 from lutcore.mesh import TriangleMesh
 
 
@@ -55,17 +57,39 @@ def test_islands_smaller_than_a_patch_still_choose_a_scale():
         faces.append(mesh.faces + count)
         count += len(mesh.vertices)
     mesh = TriangleMesh(np.vstack(vertices), np.vstack(faces))
-    assert np.abs(principal_curvatures(mesh).k1 - 1.0).max() < 0.01
+    off = np.abs(principal_curvatures(mesh).k1 - 1.0)
+    assert np.sqrt(np.mean(off**2)) < 0.003  # the precision that `auto` aims at is .002
+    assert off.max() < 0.04  # at the poles of the spirals, whose stars are uneven
 
 
-@pytest.mark.parametrize("noise", [0.02, 0.1])
-def test_the_error_bar_is_of_the_size_of_the_error(noise):
-    exact = torus(20_000, irregular=True)
-    found = principal_curvatures(exact.noisy(noise))
-    apart = np.hypot(found.k1 - exact.truth.k1, found.k2 - exact.truth.k2) / np.sqrt(2.0)
-    # Not calibrated yet: half to nine tenths within one sigma, four fifths within two.
-    assert 0.5 < np.mean(apart < found.error) < 0.9
-    assert np.mean(apart < 2.0 * found.error) > 0.8
+def smoothed_noise(exact, share, length):
+    """The mesh with noise along the normal that neighbours over some edges have in common."""
+    points, faces = exact.mesh.vertices, exact.mesh.faces
+    edge = np.linalg.norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2).mean()
+    white = np.random.default_rng(0).standard_normal((len(points), 6))
+    operator = surface(exact.mesh).operator
+    waves = (white + low_pass(operator, white, [length * edge])[:, 0])[:, 0]
+    waves *= share * edge / waves.std()
+    return TriangleMesh(points + waves[:, None] * exact.truth.normals, faces)
+
+
+@pytest.mark.parametrize("noise", ["white 2 %", "white 10 %", "correlated 5 %"])
+@pytest.mark.parametrize("shape", [ellipsoid, torus])
+def test_error_bars_hold_the_truth_as_often_as_they_say(shape, noise):
+    # Other surfaces than those that the constants were found on: other radii, counts and seeds.
+    own = {ellipsoid: {"axes": (1.0, 0.8, 0.6)}, torus: {"minor": 0.5}}[shape]
+    exact = shape(25_000, irregular=True, seed=7, **own)
+    if noise.startswith("white"):
+        mesh = exact.noisy(float(noise.split()[1]) / 100.0, seed=8)
+    else:
+        mesh = smoothed_noise(exact, 0.05, 1.5)
+    found = principal_curvatures(mesh)
+    truth = exact.truth
+    apart = np.concatenate([np.abs(found.k1 - truth.k1), np.abs(found.k2 - truth.k2)])
+    bars = np.tile(found.error, 2)
+    # A Gaussian has .683 and .954; a single surface may stray by as much as its kind is alike.
+    assert 0.55 < np.mean(apart < bars) < 0.9
+    assert np.mean(apart < 2.0 * bars) > 0.85
 
 
 def test_progress_only_grows_and_ends_at_one():

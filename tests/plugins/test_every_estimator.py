@@ -138,7 +138,8 @@ def test_flipped_faces_negate(method):
     mesh = analytic.saddle(1_500, irregular=True).mesh
     before = principal_curvatures(mesh, method)
     after = principal_curvatures(TriangleMesh(mesh.vertices, mesh.faces[:, ::-1]), method)
-    limit = 2e-4 * np.abs(before.k1).max()
+    # Single precision; at a rim it passes through what neighbours lend each other.
+    limit = 5e-4 * np.abs(before.k1).max()
     assert_allclose(after.k1, -before.k2, atol=limit)
     assert_allclose(after.k2, -before.k1, atol=limit)
     assert_allclose(after.normals, -before.normals, atol=1e-4)

@@ -1,0 +1,108 @@
+"""Shape operators of stars that tell little, improved by what their neighbours tell."""
+
+import numpy as np
+
+from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.compiled import compiled
+from lutcore.tensors import in_space, in_tangent_plane
+
+# Passes of the iteration: reaches that many rings, more than a corner of a rim closes.
+_PASSES = 40
+# Squared error that remains, over what the sums say: changes are not the same everywhere.
+_CAUTION = 2.0
+# Pairs of neighbours that tell how fast curvature changes.
+_PAIRS = 20_000
+
+
+@compiled()
+def borrow(
+    start: IndexArray,
+    neighbour: IndexArray,
+    normals: FloatArray,
+    weak: IndexArray,
+    closed: BoolArray,
+    tensors: FloatArray,
+    square: FloatArray,
+) -> None:
+    """Join the tensors of weak stars with those of their neighbours, by their errors.
+
+    At a rim half of the star is missing, and inner neighbours know more. The result minimises the
+    squared distance from what was measured, over its squared error, and the squared differences
+    between neighbours, over what neighbours elsewhere differ by: a noisy rim takes over what the
+    inside knows, a precise one stays as it is. Stars that smoothing has closed have measured
+    nothing; an island without any open star keeps what it came with.
+
+    Parameters
+    ----------
+    start, neighbour : ndarray of int32
+        Neighbours of each vertex.
+    normals : ndarray, shape=(n, 3)
+        Unit normals; tensors are in their `tangent_frame`.
+    weak : ndarray of int32, shape=(w,)
+        Vertices near a rim, and those whose stars have closed.
+    closed : ndarray of bool, shape=(w,)
+        Which of them have closed.
+    tensors : ndarray, shape=(n, 3)
+        Entries xx, xy, yy; rewritten at `weak`.
+    square : ndarray, shape=(n,)
+        Squared error bars; rewritten likewise.
+    """
+    number = np.full(len(normals), -1, np.int32)
+    for w in range(len(weak)):
+        number[weak[w]] = w
+    step = _step(start, neighbour, normals, number, tensors)
+    measured = np.empty((len(weak), 6))
+    certainty = np.zeros(len(weak))
+    now = np.empty((len(weak), 7))
+    for w in range(len(weak)):
+        measured[w] = in_space(normals[weak[w]], tensors[weak[w]])
+        now[w, :6] = measured[w]
+        now[w, 6] = square[weak[w]]
+        if not closed[w]:
+            certainty[w] = 1.0 / max(square[weak[w]], 1e-30)
+    after = np.empty_like(now)
+    total = np.empty(7)
+    for _ in range(_PASSES):
+        for w in range(len(weak)):
+            first, last = start[weak[w]], start[weak[w] + 1]
+            total[:] = 0.0
+            for at in range(first, last):
+                j = neighbour[at]
+                if number[j] >= 0:
+                    total += now[number[j]]
+                else:
+                    total[:6] += in_space(normals[j], tensors[j])
+                    total[6] += square[j]
+            count = last - first
+            pull = count / step
+            after[w, :6] = certainty[w] * measured[w] + total[:6] / step
+            after[w, :6] /= certainty[w] + pull
+            # Neighbours err alike: together they know no more than one of them does.
+            after[w, 6] = 1.0 / (certainty[w] + 1.0 / (total[6] / count + step))
+        now, after = after, now
+    for w in range(len(weak)):
+        i = weak[w]
+        tensors[i, 0], tensors[i, 1], tensors[i, 2] = in_tangent_plane(normals[i], now[w, :6])
+        square[i] = _CAUTION * now[w, 6]
+
+
+@compiled()
+def _step(
+    start: IndexArray,
+    neighbour: IndexArray,
+    normals: FloatArray,
+    number: IndexArray,
+    tensors: FloatArray,
+) -> float:
+    """Return the typical squared difference of two neighbours that are not weak."""
+    every = 1 + len(normals) // _PAIRS
+    found = np.empty(len(normals) // every + 1)
+    count = 0
+    for i in range(0, len(normals), every):
+        j = neighbour[start[i]]
+        if number[i] < 0 and number[j] < 0:
+            d = in_space(normals[i], tensors[i]) - in_space(normals[j], tensors[j])
+            xx, xy, yy = in_tangent_plane(normals[i], d)
+            found[count] = 0.5 * (xx * xx + yy * yy) + xy * xy
+            count += 1
+    return max(np.median(found[:count]), 1e-30) if count > 0 else 1.0
