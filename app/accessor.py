@@ -38,7 +38,7 @@ class CurvelightAccessor:
         self._data = data
 
     def curvature(
-        self, method: str = "auto", scale: float | None = None, **parameters: Any
+        self, method: str = "auto", scale: float | FloatArray | None = None, **parameters: Any
     ) -> pyvista.PolyData:
         """Return a copy of the surface with its curvature as point data.
 
@@ -46,8 +46,9 @@ class CurvelightAccessor:
         ----------
         method : str
             A curvature estimator; see `lutcore.estimators`.
-        scale : float, optional
-            Length to average over, mesh units; chosen by the estimator if not given.
+        scale : float or ndarray, shape=(n,), optional
+            Length to average over, mesh units, for all points or for each; chosen by the
+            estimator if not given.
         **parameters : object
             Parameters of the estimator.
 
@@ -55,7 +56,8 @@ class CurvelightAccessor:
         -------
         pyvista.PolyData
             With k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness and
-            curvature_error, in 1/mesh unit: convex is positive, k1 >= k2.
+            curvature_error, in 1/mesh unit: convex is positive, k1 >= k2; and curvature_scale,
+            mesh units.
 
         Raises
         ------

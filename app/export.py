@@ -8,6 +8,7 @@ from app.writing import replacing
 from lutcore.arrays import AnyArray, FloatArray
 from lutcore.color import srgb_bytes
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.diagnostics import vertex_scales
 from lutcore.errors import ParameterError
 from lutcore.mesh import TriangleMesh
 
@@ -15,21 +16,24 @@ DATA_SUFFIXES = (".vtp", ".ply", ".npz", ".csv")
 Arrays = dict[str, AnyArray]
 
 
-def curvature_arrays(curvatures: PrincipalCurvatures) -> Arrays:
+def curvature_arrays(curvatures: PrincipalCurvatures, spread: FloatArray | None = None) -> Arrays:
     """Return a curvature result under its public names.
 
     Parameters
     ----------
     curvatures : PrincipalCurvatures
         Result of an estimator.
+    spread : ndarray, shape=(n,), optional
+        Disagreement of several estimators, 1/mesh unit.
 
     Returns
     -------
     dict of str to ndarray
         k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness,
-        curvature_error; in 1/mesh unit.
+        curvature_error, in 1/mesh unit; curvature_scale, in mesh units; and
+        curvature_disagreement where there is one.
     """
-    return {
+    arrays: Arrays = {
         "k1": curvatures.k1,
         "k2": curvatures.k2,
         "d1": curvatures.d1,
@@ -39,7 +43,9 @@ def curvature_arrays(curvatures: PrincipalCurvatures) -> Arrays:
         "shape_index": curvatures.shape_index,
         "curvedness": curvatures.curvedness,
         "curvature_error": curvatures.error,
+        "curvature_scale": vertex_scales(curvatures).copy(),
     }
+    return arrays if spread is None else arrays | {"curvature_disagreement": spread}
 
 
 def shading_arrays(exitance: FloatArray, exposure: float) -> Arrays:

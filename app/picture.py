@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from app import camera as cameras
 from app.colormaps import PAPER, table
 from app.pipeline import Pipeline, Subject
-from app.quantities import QUANTITIES, robust_range
 from app.render import STRIP, Image, Panel, draw
 from app.scene import ColorScale, Surface
 from app.session import Camera, Method, Session
+from app.shown import names_shown, shown
 from lutcore.arrays import FloatArray
 from lutcore.color import auto_exposure, srgb_bytes, srgb_decode
 from lutcore.curvature import PrincipalCurvatures
@@ -19,9 +19,12 @@ from lutcore.errors import ParameterError
 from lutcore.fresnel import transmittance
 
 _BAR_PIXELS_PER_HEIGHT = 0.16
+_GRID_BAR = 0.26
 _LEAST_BAR = 110.0
 _MOST_BAR = 0.35
 _LEAST_WIDTH = 32
+# Panels side by side where each quantity has its own: eight fill two rows, nine three.
+_COLUMNS = (4, 3, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +39,8 @@ class Picture:
         Where it was taken from.
     exposure : float or None
         The exposure, where something was shaded.
-    range : tuple of 2 floats or None
-        Ends of the colour bar, where there is one.
+    ranges : dict of str to tuple of 2 floats
+        Ends of the colour bars by quantity, ``ciede2000`` for a difference.
     difference : dict of str to float or None
         Mean, 99th percentile and maximum of CIEDE2000 over the vertices, where it was asked for.
     """
@@ -45,8 +48,13 @@ class Picture:
     image: Image
     camera: Camera
     exposure: float | None
-    range: tuple[float, float] | None
+    ranges: dict[str, tuple[float, float]]
     difference: dict[str, float] | None
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """Ends of the colour bar, where there is one and only one."""
+        return next(iter(self.ranges.values())) if len(self.ranges) == 1 else None
 
 
 def render(session: Session, pipeline: Pipeline) -> Picture:
@@ -72,6 +80,19 @@ def render(session: Session, pipeline: Pipeline) -> Picture:
     return _Studio(session, pipeline).picture()
 
 
+def _grid(session: Session) -> tuple[int, int]:
+    """Return how many surfaces lie side by side, and in how many rows."""
+    if session.view == "curvature":
+        count = len(names_shown(session))
+        columns = next(columns for columns in _COLUMNS if count % columns == 0)
+        return columns, count // columns
+    if session.view == "figure":
+        if session.quantity == "all":
+            raise ParameterError("a figure shows one quantity; choose one instead of all")
+        return 2, 1
+    return (len(session.compared) + session.difference if session.view == "compare" else 1), 1
+
+
 class _Studio:
     """One session on its way to a picture."""
 
@@ -79,28 +100,25 @@ class _Studio:
         self.session = session
         self.pipeline = pipeline
         self.subject: Subject = pipeline.subject(session)
-        bar = max(_BAR_PIXELS_PER_HEIGHT * session.size[1], _LEAST_BAR)
-        self.bar_share = min(bar / session.size[0], _MOST_BAR)
         self.has_bar = session.view in ("curvature", "figure") or session.difference
-        self.count = {
-            "shade": 1,
-            "curvature": 1,
-            "figure": 2,
-            "compare": len(session.compared) + session.difference,
-        }[session.view]
+        self.columns, self.rows = _grid(session)
+        share = _BAR_PIXELS_PER_HEIGHT if self.rows == 1 else _GRID_BAR
+        bar = max(share * session.size[1] / self.rows, _LEAST_BAR)
+        bars = self.columns if session.view == "curvature" else int(self.has_bar)
+        self.bar_share = min(bar / session.size[0], _MOST_BAR / max(bars, 1))
         if session.view == "compare" and len(session.compared) < 2:
             raise ParameterError("a comparison needs two models or more")
-        self.width = (1.0 - self.bar_share * self.has_bar) / self.count
+        self.width = (1.0 - self.bar_share * bars) / self.columns
         if self.width * session.size[0] < _LEAST_WIDTH:
             raise ParameterError(
                 f"a picture {session.size[0]} pixels wide leaves less than {_LEAST_WIDTH} for "
                 "each surface; make it wider"
             )
-        aspect = self.width * session.size[0] / (session.size[1] * (1.0 - STRIP))
+        aspect = self.width * session.size[0] / (session.size[1] * (1.0 / self.rows - STRIP))
         self.camera = cameras.camera_of(session.camera, self.subject, aspect)
         self.axes = cameras.axes(self.camera)
         self.exposure: float | None = session.exposure
-        self.range: tuple[float, float] | None = None
+        self.ranges: dict[str, tuple[float, float]] = {}
         self.difference: dict[str, float] | None = None
 
     def picture(self) -> Picture:
@@ -112,10 +130,12 @@ class _Studio:
         if view == "compare":
             panels += self._comparison()
         if view in ("curvature", "figure"):
-            panels += self._curvature()
+            panels += [
+                panel for name in names_shown(self.session) for panel in self._curvature(name)
+            ]
         self.pipeline.progress(0.95, "drawing")
-        image = draw(panels, self.session.size, self.session.background)
-        return Picture(image, self.camera, self.exposure, self.range, self.difference)
+        image = draw(panels, self.session.size, self.session.background, self.rows)
+        return Picture(image, self.camera, self.exposure, self.ranges, self.difference)
 
     def _shaded(self, model: Method) -> Panel:
         linear = self._linear(model)
@@ -154,18 +174,19 @@ class _Studio:
     def _curvatures(self) -> PrincipalCurvatures:
         return self.pipeline.curvatures(self.session)
 
-    def _curvature(self) -> list[Panel]:
-        name = self.session.quantity
-        size = self.pipeline.mm_per_unit(self.session)
-        values = QUANTITIES[name].values(self._curvatures(), size)
-        self.range = self.session.range or robust_range(values, self.session.symmetric)
+    def _curvature(self, name: str) -> list[Panel]:
+        found = shown(self.session, self.pipeline, name)
+        self.ranges[name] = found.low, found.high
         colors = table(self.session.colormap or PAPER)
         if self.session.flip:
             colors = colors[::-1]
-        scale = ColorScale(colors, *self.range, QUANTITIES[name].title)
+        alone = self.columns == 1 or self.session.view == "figure"
+        title, caption = (found.quantity.title, "") if alone else ("", found.quantity.heading)
+        scale = ColorScale(colors, found.low, found.high, title)
         # Infinite errors are drawn at the end of the scale.
-        shown = np.nan_to_num(values, posinf=self.range[1])
-        surface = self._surface(values=shown, scale=scale, lit=not self.session.flat)
+        values = np.nan_to_num(found.values, posinf=found.high)
+        lit = not self.session.flat
+        surface = self._surface(values=values, scale=scale, lit=lit, caption=caption)
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]
 
     def _comparison(self) -> list[Panel]:
@@ -186,8 +207,9 @@ class _Studio:
             "p99": float(np.percentile(values, 99.0)),
             "max": float(values.max()),
         }
-        self.range = self.session.range or (0.0, max(1.0, self.difference["p99"]))
-        scale = ColorScale(table(self.session.colormap or "magma"), *self.range, "CIEDE2000")
+        ends = self.session.range or (0.0, max(1.0, self.difference["p99"]))
+        self.ranges["ciede2000"] = ends
+        scale = ColorScale(table(self.session.colormap or "magma"), *ends, "CIEDE2000")
         first, second = (model.name for model in self.session.compared[:2])
         surface = self._surface(values=values, scale=scale, caption=f"{second} against {first}")
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]

@@ -4,9 +4,10 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import msgspec
+from msgspec.structs import replace
 
 from app.loading import LoadedMesh, load_mesh
 from app.samples import PREFIX, Sample, sample
@@ -18,6 +19,9 @@ from lutcore.lights import Light
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from app.consultation import Consultation
 
 T = TypeVar("T")
 _KEPT = 8
@@ -124,23 +128,62 @@ class Pipeline:
         MeshError
             If no face has an area.
         """
-        from lutcore.estimation import principal_curvatures
-
-        mesh = self.subject(session).mesh
-        method = session.estimator
-        scale = self.scale(session)
         found = self._once(
             ("curvatures", *self._curvature_key(session)),
-            lambda: principal_curvatures(
-                mesh, method=method.name, scale=scale, progress=self.progress, **method.parameters
-            ),
+            lambda: self._estimate(session, self.progress),
         )
         if not found.estimated.any():
             raise MeshError(
-                f"{session.mesh}: none of its {len(mesh.faces)} faces has an area, so there is no "
-                "surface; choose another file"
+                f"{session.mesh}: none of its {len(self.subject(session).mesh.faces)} "
+                "faces has an area, so there is no surface; choose another file"
             )
         return found
+
+    def consult(self, session: Session) -> "Consultation":
+        """Return how far the session's `peers` are apart.
+
+        One that cannot estimate the curvature of this mesh is left out, with its reason.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, scale and `peers` are used; a scale that is left open is each one's own
+            choice.
+
+        Returns
+        -------
+        Consultation
+            Their disagreement.
+
+        Raises
+        ------
+        ParameterError
+            If a name does not exist or comes twice, or fewer than three are left.
+        CancelledError
+            If `progress` asked to stop.
+        """
+        from app.consultation import consult
+
+        sessions = [replace(session, estimator=peer) for peer in session.peers]
+
+        def estimate(one: Session, progress: Progress) -> PrincipalCurvatures:
+            # Not kept but for the session's own: they would push out everything else.
+            own = one.estimator == session.estimator
+            return self.curvatures(one) if own else self._estimate(one, progress)
+
+        key = ("peers", *(self._curvature_key(one) for one in sessions))
+        return self._once(key, lambda: consult(sessions, estimate, self.progress))
+
+    def _estimate(self, session: Session, progress: Progress) -> PrincipalCurvatures:
+        from lutcore.estimation import principal_curvatures
+
+        return principal_curvatures(
+            self.subject(session).mesh,
+            method=session.estimator.name,
+            scale=self.scale(session),
+            progress=progress,
+            **session.estimator.parameters,
+        )
 
     def scale(self, session: Session) -> float | None:
         """Return the length that curvature is averaged over.

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.diagnostics import vertex_scales
 
-_ROBUST = (5.0, 95.0)
+_UNITS = {-1: "mm", 0: "1", 1: "1/mm", 2: "1/mm^2"}
 
 
 @dataclass(frozen=True)
@@ -18,20 +17,61 @@ class Quantity:
     ----------
     attribute : str
         Its name in `PrincipalCurvatures`.
-    title : str
-        What a person reads above the colour bar.
+    words : str
+        What it is called above a colour bar, in lines.
+    name : str
+        What it is called in a line with others.
     power : int
         Its unit is 1/length to this power.
+    signed : bool
+        Whether it can be negative.
+    measured : bool
+        Whether it is computed from k1 and k2, so that their error makes it wrong.
     """
 
     attribute: str
-    title: str
+    words: str
+    name: str
     power: int = 1
+    signed: bool = True
+    measured: bool = True
 
     @property
     def unit(self) -> str:
         """Unit of the values that `values` returns."""
-        return ("1", "1/mm", "1/mm^2")[self.power]
+        return _UNITS[self.power]
+
+    @property
+    def title(self) -> str:
+        """Lines above a colour bar: what it is, and its unit."""
+        return f"{self.words}\n{self.printed_unit}" if self.power else self.words
+
+    @property
+    def heading(self) -> str:
+        """Name and unit in one line."""
+        return f"{self.name}, {self.printed_unit}" if self.power else self.name
+
+    @property
+    def printed_unit(self) -> str:
+        """The unit as a person writes it."""
+        return self.unit.replace("^2", "²")
+
+    def in_mm(self, values: FloatArray, mm_per_unit: float) -> FloatArray:
+        """Return values in mesh units as values in millimetres.
+
+        Parameters
+        ----------
+        values : ndarray
+            Of this quantity, 1/mesh unit to its power.
+        mm_per_unit : float
+            Size of a mesh unit.
+
+        Returns
+        -------
+        ndarray
+            In `unit`.
+        """
+        return values / mm_per_unit**self.power
 
     def values(self, curvatures: PrincipalCurvatures, mm_per_unit: float) -> FloatArray:
         """Return the values in millimetres.
@@ -46,44 +86,44 @@ class Quantity:
         Returns
         -------
         ndarray, shape=(n,)
-            In 1/mm to the quantity's power.
+            In `unit`.
         """
-        values: FloatArray = getattr(curvatures, self.attribute)
-        return values / mm_per_unit**self.power
+        return self.in_mm(raw(self.attribute, curvatures), mm_per_unit)
 
 
-QUANTITIES = {
-    "curvedness": Quantity("curvedness", "curvedness\n√((k1² + k2²)/2)\n1/mm"),
-    "k1": Quantity("k1", "larger principal\ncurvature k1\n1/mm"),
-    "k2": Quantity("k2", "smaller principal\ncurvature k2\n1/mm"),
-    "mean": Quantity("mean", "mean curvature\n(k1 + k2)/2\n1/mm"),
-    "gauss": Quantity("gauss", "Gauss curvature\nk1 k2\n1/mm²", 2),
-    "shape_index": Quantity("shape_index", "shape index", 0),
-    "error": Quantity("error", "error of k1, k2\n(one sigma)\n1/mm"),
-}
-
-
-def robust_range(values: FloatArray, symmetric: bool = False) -> tuple[float, float]:
-    """Return the range that shows most of the values.
+def raw(attribute: str, curvatures: PrincipalCurvatures) -> FloatArray:
+    """Return one value for each vertex, in mesh units.
 
     Parameters
     ----------
-    values : ndarray
-        Infinite ones are left out.
-    symmetric : bool
-        Whether the range is as wide below zero as above.
+    attribute : str
+        Name of a scalar in `PrincipalCurvatures`, `scale` included.
+    curvatures : PrincipalCurvatures
+        Where it is.
 
     Returns
     -------
-    tuple of 2 floats
-        The 5th and the 95th percentile, kept apart where all is equal.
+    ndarray, shape=(n,)
+        The values.
     """
-    finite = values[np.isfinite(values)]
-    if finite.size == 0:
-        return 0.0, 1.0
-    low, high = (float(end) for end in np.percentile(finite, _ROBUST))
-    if symmetric:
-        low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
-    # Where all is equal the range opens upwards, so that nothing looks large.
-    gap = 1e-3 * max(abs(low), abs(high), 1e-9)
-    return (low, high) if high - low > 1e-3 * gap else (low, low + gap)
+    if attribute == "scale":
+        return vertex_scales(curvatures)
+    values: FloatArray = getattr(curvatures, attribute)
+    return values
+
+
+QUANTITIES = {
+    "k1": Quantity("k1", "larger principal\ncurvature k1", "curvature k1"),
+    "k2": Quantity("k2", "smaller principal\ncurvature k2", "curvature k2"),
+    "mean": Quantity("mean", "mean curvature\n(k1 + k2)/2", "mean curvature"),
+    "gauss": Quantity("gauss", "Gauss curvature\nk1 k2", "Gauss curvature", 2),
+    "shape_index": Quantity("shape_index", "shape index", "shape index", 0),
+    "curvedness": Quantity(
+        "curvedness", "curvedness\n√((k1² + k2²)/2)", "curvedness", signed=False
+    ),
+    "error": Quantity("error", "error of k1, k2\n(one sigma)", "error of k1, k2", 1, False, False),
+    "scale": Quantity("scale", "scale, length\naveraged over", "scale", -1, False, False),
+    "disagreement": Quantity(
+        "", "disagreement\nof estimators\n(one sigma)", "disagreement", 1, False, False
+    ),
+}

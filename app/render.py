@@ -2,16 +2,32 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app import gl
-from app.scene import ColorScale, Surface, color, fill_bar, fill_caption, fill_surface
-from app.session import Camera
+from app.scene import (
+    ColorScale,
+    Surface,
+    color,
+    fill_bar,
+    fill_caption,
+    fill_surface,
+    font_size,
+    shape_of,
+)
+from app.session import Camera, Vector
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 Image = NDArray[np.uint8]
+Shapes = dict[tuple[int, Vector], "vtkPolyData"]
 _SAMPLES = 4
+_GRID_LETTERS = 1.25
 STRIP = 0.045
 """Share of the picture's height below every surface, for its caption."""
 
@@ -25,7 +41,7 @@ class Panel:
     content : Surface or ColorScale
         A mesh, or a colour bar.
     width : float
-        Its share of the picture's width; the shares of a picture sum to 1.
+        Its share of the picture's width; the shares of a row sum to 1.
     camera : Camera, optional
         Needed for a mesh.
     """
@@ -35,17 +51,19 @@ class Panel:
     camera: Camera | None = None
 
 
-def draw(panels: Sequence[Panel], size: tuple[int, int], background: str) -> Image:
+def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int = 1) -> Image:
     """Draw panels side by side.
 
     Parameters
     ----------
     panels : sequence of Panel
-        From left to right.
+        From left to right, and row by row from the top.
     size : tuple of 2 ints
         Width and height, pixels.
     background : str
         A CSS colour.
+    rows : int
+        Equally high rows, each with as many panels.
 
     Returns
     -------
@@ -63,7 +81,7 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str) -> Ima
     gl.require()
     import vtkmodules.vtkRenderingFreeType
     import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
-    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     with gl.offscreen():
         window = vtkRenderWindow()
@@ -71,36 +89,67 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str) -> Ima
     # Four samples cost 1.6 times one even on a software renderer, once per picture.
     window.SetMultiSamples(_SAMPLES)
     window.SetSize(*size)
-    left = 0.0
+    shapes: Shapes = {}
+    across = len(panels) // rows
+    # A grid is looked at as a whole, so from farther away.
+    height = size[1] * (_GRID_LETTERS if rows > 1 else 1.0)
+    letters = _caption_letters(panels, (size[0], height))
     try:
-        for panel in panels:
-            renderer = vtkRenderer()
-            renderer.SetBackground(*shade)
-            renderer.AutomaticLightCreationOff()
-            bottom = STRIP if isinstance(panel.content, Surface) else 0.0
-            renderer.SetViewport(left, bottom, left + panel.width, 1.0)
-            window.AddRenderer(renderer)
-            _fill(panel)(renderer, (panel.width * size[0], size[1]))
+        for index, panel in enumerate(panels):
+            row, column = divmod(index, across)
+            left = sum(other.width for other in panels[index - column : index])
+            bottom = 1.0 - (row + 1) / rows
+            right, top = left + panel.width, bottom + 1.0 / rows
+            strip = bottom + STRIP if isinstance(panel.content, Surface) else bottom
+            pixels = (panel.width * size[0], height)
+            _fill(panel, shapes)(_add(window, shade, (left, strip, right, top)), pixels)
             if isinstance(panel.content, Surface):
-                below = vtkRenderer()
-                below.SetBackground(*shade)
-                below.SetViewport(left, 0.0, left + panel.width, STRIP)
-                fill_caption(below, panel.content.caption, (panel.width * size[0], size[1]))
-                window.AddRenderer(below)
-            left += panel.width
+                below = _add(window, shade, (left, bottom, right, strip))
+                fill_caption(below, panel.content.caption, letters)
         window.Render()
         return _grab(window, size)
     finally:
         window.Finalize()
 
 
-def _fill(panel: Panel) -> Callable[..., None]:
+def _caption_letters(panels: Sequence[Panel], size: tuple[float, float]) -> int:
+    """Size of letters for all captions: as large as the tightest one allows."""
+    return min(
+        (
+            font_size(panel.content.caption, (panel.width * size[0], size[1]))
+            for panel in panels
+            if isinstance(panel.content, Surface) and panel.content.caption
+        ),
+        default=0,
+    )
+
+
+def _add(
+    window: "vtkRenderWindow",
+    shade: tuple[float, float, float],
+    box: tuple[float, float, float, float],
+) -> "vtkRenderer":
+    """Return a new renderer of a part of the window: left, bottom, right, top as shares."""
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    renderer = vtkRenderer()
+    renderer.SetBackground(*shade)
+    renderer.AutomaticLightCreationOff()
+    renderer.SetViewport(*box)
+    window.AddRenderer(renderer)
+    return renderer
+
+
+def _fill(panel: Panel, shapes: Shapes) -> Callable[..., None]:
     content, camera = panel.content, panel.camera
     if isinstance(content, ColorScale):
         return lambda renderer, pixels: fill_bar(renderer, content, pixels)
     if camera is None:
         raise ValueError("a panel with a mesh needs a camera")
-    return lambda renderer, _: fill_surface(renderer, content, camera)
+    key = id(content.mesh), camera.target
+    if key not in shapes:
+        shapes[key] = shape_of(content.mesh, camera)
+    return lambda renderer, _: fill_surface(renderer, content, camera, shapes[key])
 
 
 def _grab(window: object, size: tuple[int, int]) -> Image:

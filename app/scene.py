@@ -29,6 +29,8 @@ _FONT_SHARE = 0.021
 _LEAST_FONT = 7
 # Width of a letter over the font's size, on the safe side.
 _LETTER = 0.56
+# As wide as a bar with the numbers beside it.
+_LABELS = "bar -0.00123"
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +44,7 @@ class ColorScale:
     low, high : float
         Values of the first and the last colour.
     title : str
-        Quantity and unit, above the bar.
+        Quantity and unit, above the bar; empty where they are said elsewhere.
     """
 
     colors: FloatArray
@@ -113,7 +115,37 @@ def color(text: str) -> tuple[float, float, float]:
     return red / 255.0, green / 255.0, blue / 255.0
 
 
-def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera) -> None:
+def shape_of(mesh: TriangleMesh, camera: Camera) -> vtkPolyData:
+    """Return a mesh's geometry as VTK draws it, for all surfaces of that mesh and camera.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The mesh.
+    camera : Camera
+        Where it is seen from.
+
+    Returns
+    -------
+    vtkPolyData
+        Points relative to the camera's target, and triangles.
+    """
+    points = vtkPoints()
+    # The GPU gets single precision: around what is looked at it stays exact, however far the mesh
+    # lies from the origin or stray parts lie from the mesh.
+    around = (mesh.vertices - np.asarray(camera.target)).astype(np.float32)
+    points.SetData(numpy_to_vtk(around, deep=True))
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=True))
+    shape = vtkPolyData()
+    shape.SetPoints(points)
+    shape.SetPolys(cells)
+    return shape
+
+
+def fill_surface(
+    renderer: vtkRenderer, surface: Surface, camera: Camera, shape: vtkPolyData
+) -> None:
     """Put a surface into a renderer, seen by a camera.
 
     Parameters
@@ -124,12 +156,11 @@ def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera) -> Non
         What to draw.
     camera : Camera
         Where from.
+    shape : vtkPolyData
+        Its geometry; see `shape_of`.
     """
-    # The GPU gets single precision: around what is looked at it stays exact, however far the mesh
-    # lies from the origin or stray parts lie from the mesh.
-    origin = np.asarray(camera.target)
     mapper = vtkPolyDataMapper()
-    mapper.SetInputData(_poly_data(surface, origin))
+    mapper.SetInputData(_poly_data(surface, shape))
     if surface.scale is not None:
         mapper.SetLookupTable(_lookup(surface.scale))
         mapper.UseLookupTableScalarRangeOn()
@@ -142,10 +173,10 @@ def fill_surface(renderer: vtkRenderer, surface: Surface, camera: Camera) -> Non
     else:
         actor.GetProperty().LightingOff()
     renderer.AddActor(actor)
-    _aim(renderer, camera, origin)
+    _aim(renderer, camera)
 
 
-def fill_caption(renderer: vtkRenderer, caption: str, pixels: tuple[float, float]) -> None:
+def fill_caption(renderer: vtkRenderer, caption: str, size: int) -> None:
     """Put one line of text into a renderer; left out where it could not be read.
 
     Parameters
@@ -154,11 +185,10 @@ def fill_caption(renderer: vtkRenderer, caption: str, pixels: tuple[float, float
         An empty renderer.
     caption : str
         The line, or nothing.
-    pixels : tuple of 2 floats
-        Width that there is for it, and height of the picture.
+    size : int
+        Of its letters; see `font_size`.
     """
-    size = _font_size(caption, pixels) if caption else 0
-    if size < _LEAST_FONT:
+    if not caption or size < _LEAST_FONT:
         return
     text = _text(caption, renderer, size)
     text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
@@ -179,7 +209,7 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, floa
     pixels : tuple of 2 floats
         Width that there is for it, and height of the picture.
     """
-    size = _font_size(scale.title, pixels)
+    size = font_size(scale.title or _LABELS, pixels)
     bar = vtkScalarBarActor()
     bar.SetLookupTable(_lookup(scale))
     bar.SetMaximumNumberOfColors(256)
@@ -194,6 +224,8 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, floa
     bar.SetWidth(0.8)
     bar.SetHeight(0.72)
     renderer.AddViewProp(bar)
+    if not scale.title:
+        return
     title = _text(scale.title, renderer, size)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.5, 0.87)
@@ -208,15 +240,9 @@ def _new_label_format() -> bool:
     return (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 6)
 
 
-def _poly_data(surface: Surface, origin: FloatArray) -> vtkPolyData:
-    mesh = surface.mesh
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk((mesh.vertices - origin).astype(np.float32), deep=True))
-    cells = vtkCellArray()
-    cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=True))
+def _poly_data(surface: Surface, shape: vtkPolyData) -> vtkPolyData:
     data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetPolys(cells)
+    data.ShallowCopy(shape)
     shown = surface.rgb if surface.rgb is not None else surface.values
     if shown is not None:
         data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=True))
@@ -245,10 +271,10 @@ def _light(renderer: vtkRenderer, actor: vtkActor) -> None:
     actor.GetProperty().SetInterpolationToPhong()
 
 
-def _aim(renderer: vtkRenderer, camera: Camera, origin: FloatArray) -> None:
+def _aim(renderer: vtkRenderer, camera: Camera) -> None:
     view = renderer.GetActiveCamera()
-    view.SetPosition(*(np.asarray(camera.position) - origin))
-    view.SetFocalPoint(*(np.asarray(camera.target) - origin))
+    view.SetPosition(*np.subtract(camera.position, camera.target))
+    view.SetFocalPoint(0.0, 0.0, 0.0)
     view.SetViewUp(*camera.up)
     view.SetViewAngle(camera.angle)
     if camera.height is not None:
@@ -257,8 +283,21 @@ def _aim(renderer: vtkRenderer, camera: Camera, origin: FloatArray) -> None:
     renderer.ResetCameraClippingRange()
 
 
-def _font_size(words: str, pixels: tuple[float, float]) -> int:
-    """Size of letters that fit the width, and are in proportion to the height."""
+def font_size(words: str, pixels: tuple[float, float]) -> int:
+    """Return the size of letters that fit the width and are in proportion to the height.
+
+    Parameters
+    ----------
+    words : str
+        One line or more.
+    pixels : tuple of 2 floats
+        Width that there is for them, and height of the picture.
+
+    Returns
+    -------
+    int
+        Pixels.
+    """
     width, height = pixels
     longest = max(map(len, words.splitlines()))
     return int(min(_FONT_SHARE * height, 0.95 * width / (_LETTER * longest)))

@@ -79,6 +79,15 @@ class Method(_Part, frozen=True):
     name: str
     parameters: dict[str, float | str] = {}
 
+    @property
+    def label(self) -> str:
+        """The name, with the parameters that are not at their default."""
+        values = (
+            f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+            for name, value in self.parameters.items()
+        )
+        return f"{self.name} ({', '.join(values)})" if self.parameters else self.name
+
 
 class Camera(_Part, frozen=True):
     """Where the picture is taken from, in world coordinates.
@@ -95,7 +104,18 @@ class Camera(_Part, frozen=True):
 
 
 View = Literal["shade", "curvature", "figure", "compare"]
-Quantity = Literal["curvedness", "k1", "k2", "mean", "gauss", "shape_index", "error"]
+Quantity = Literal[
+    "curvedness",
+    "k1",
+    "k2",
+    "mean",
+    "gauss",
+    "shape_index",
+    "error",
+    "scale",
+    "disagreement",
+    "all",
+]
 
 # One strong light from the right and a weak one from the left, as in the paper's Figure 1.
 FIGURE_LIGHTS = (
@@ -109,10 +129,12 @@ class Session(_Part, frozen=True):
 
     `mesh` is a path or ``sample:NAME``; `mm_per_unit` None takes the sample's own scale, else
     1 mm; `scale` is the length in mesh units that curvature is averaged over, None chooses it;
-    `camera` is a view name (see `app.camera`) or a camera; `range` None takes robust percentiles,
-    `symmetric` makes it as wide below zero as above, `flip` turns the colour map round;
-    `colormap` None is the paper's for curvature and magma for differences; `exposure` None
-    brings the brightest parts near white.
+    `peers` are the estimators whose disagreement is measured; `quantity` ``all`` draws each in a
+    panel of its own;
+    `camera` is a view name (see `app.camera`) or a camera; `range` None takes a robust one (see
+    `app.shown.robust_range`), `symmetric` makes it as wide below zero as above, `flip` turns the
+    colour map round; `colormap` None is the paper's for curvature and magma for differences;
+    `exposure` None brings the brightest parts near white.
     """
 
     mesh: str = "sample:marble-face-raw"
@@ -125,6 +147,7 @@ class Session(_Part, frozen=True):
     difference: bool = False
     estimator: Method = Method("auto")
     scale: Positive | None = None
+    peers: tuple[Method, ...] = ()
     quantity: Quantity = "curvedness"
     colormap: str | None = None
     range: tuple[float, float] | None = None

@@ -20,8 +20,8 @@ class Diagnosis:
     Parameters
     ----------
     interior, border, debris : ndarray of bool, shape=(n,)
-        Vertices with an estimate: away from every border, within one scale of a border, and of
-        islands far smaller than the largest. Each vertex is in one of them at most.
+        Vertices with an estimate: away from every border, within their own scale of a border, and
+        of islands far smaller than the largest. Each vertex is in one of them at most.
     below_error : float
         Share of the vertices with an estimate where neither |k1| nor |k2| exceeds its error.
     total_curvature : float
@@ -45,6 +45,29 @@ class Diagnosis:
         """|integral of k1 k2 - angle defects|, relative to the integral of |k1 k2|; 0 if flat."""
         apart = abs(self.total_curvature - self.angle_defect)
         return apart / self.absolute_curvature if self.absolute_curvature > 0.0 else 0.0
+
+    @property
+    def groups(self) -> dict[str, BoolArray]:
+        """The groups that have vertices, by name."""
+        named = {"interior": self.interior, "border": self.border, "debris": self.debris}
+        return {name: mask for name, mask in named.items() if mask.any()}
+
+
+def vertex_scales(curvatures: PrincipalCurvatures) -> FloatArray:
+    """Return the length that each vertex's curvature was averaged over.
+
+    Parameters
+    ----------
+    curvatures : PrincipalCurvatures
+        An estimate.
+
+    Returns
+    -------
+    ndarray, shape=(n,)
+        Mesh units; 0 for one-ring methods. Read-only where one length holds for all.
+    """
+    scales = np.asarray(curvatures.scale, dtype=np.float64)
+    return np.broadcast_to(scales, curvatures.k1.shape)
 
 
 def diagnose(mesh: TriangleMesh, curvatures: PrincipalCurvatures) -> Diagnosis:
@@ -73,14 +96,17 @@ def diagnose(mesh: TriangleMesh, curvatures: PrincipalCurvatures) -> Diagnosis:
         return Diagnosis(nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
     surface = welded.mesh
     main = main_islands(surface)
-    close = _within(surface, _rim(surface), float(np.median(curvatures.scale)))
+    used = welded.index >= 0
+    reach = np.empty(len(surface.vertices))
+    reach[welded.index[used]] = vertex_scales(curvatures)[used]
+    close = _within(surface, _rim(surface), reach)
     subject, near = welded.spread(main, False), welded.spread(close, False)
     largest = np.maximum(np.abs(curvatures.k1), np.abs(curvatures.k2))
     inside = main & ~close
     areas = np.zeros(len(surface.vertices))
     areas[inside] = vertex_areas(surface, vertex_corners(surface))[inside]
     gauss = np.empty(len(surface.vertices))
-    gauss[welded.index[welded.index >= 0]] = curvatures.gauss[welded.index >= 0]
+    gauss[welded.index[used]] = curvatures.gauss[used]
     return Diagnosis(
         interior=estimated & subject & ~near,
         border=estimated & subject & near,
@@ -100,15 +126,18 @@ def _rim(mesh: TriangleMesh) -> BoolArray:
     return rim
 
 
-def _within(mesh: TriangleMesh, rim: BoolArray, reach: float) -> BoolArray:
-    if reach == 0.0 or not rim.any():
+def _within(mesh: TriangleMesh, rim: BoolArray, reach: FloatArray) -> BoolArray:
+    """Mark vertices no farther from the rim than their reach."""
+    farthest = float(reach.max())
+    if farthest == 0.0 or not rim.any():
         return rim
     from scipy.spatial import cKDTree
 
+    # The query leaves out what lies at its bound.
     distance, _ = cKDTree(mesh.vertices[rim]).query(
-        mesh.vertices, distance_upper_bound=reach, workers=-1
+        mesh.vertices, distance_upper_bound=1.001 * farthest, workers=-1
     )
-    near: BoolArray = np.isfinite(distance)
+    near: BoolArray = distance <= reach
     return near
 
 

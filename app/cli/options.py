@@ -55,23 +55,34 @@ def add_picture(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--background", metavar="COLOR", help="name or #rrggbb")
 
 
-def add_colors(parser: argparse.ArgumentParser) -> None:
+def add_colors(parser: argparse.ArgumentParser, several: bool = False) -> None:
     """Add the flags of a colour map.
 
     Parameters
     ----------
     parser : ArgumentParser
         Of the command.
+    several : bool
+        Whether the command shows all quantities at once, and the disagreement of estimators.
     """
     group = parser.add_argument_group("colours")
-    group.add_argument("--quantity", choices=get_args(Quantity), help="what is shown")
+    group.add_argument(
+        "--quantity",
+        choices=[name for name in get_args(Quantity) if several or name not in _SEVERAL],
+        help="what is shown",
+    )
     group.add_argument(
         "--colormap",
         metavar="NAME",
         help="green-red as in the paper (cividis is its twin "
         "for the colour-blind), or any of matplotlib's",
     )
-    group.add_argument("--range", type=_pair, metavar="LOW,HIGH", help="ends of the colour bar")
+    group.add_argument(
+        "--range",
+        type=_pair,
+        metavar="LOW,HIGH",
+        help="ends of the colour bar; else 5th and 95th percentile of what the error bars trust",
+    )
     group.add_argument(
         "--symmetric", action="store_const", const=True, help="range as wide below 0 as above"
     )
@@ -96,6 +107,24 @@ def add_curvature(parser: argparse.ArgumentParser, words: list[str]) -> None:
     group.add_argument("--scale", metavar="auto|LENGTH", help="averaging length, mesh units")
     group.add_argument("--mm-per-unit", type=float, metavar="N", help="size of a mesh unit")
     _add_parameters(parser, estimator_registry, _chosen(words, "--method", "estimator"))
+
+
+def add_peers(parser: argparse.ArgumentParser) -> None:
+    """Add the flag that names estimators to compare.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    """
+    parser.add_argument(
+        "--disagree",
+        type=_names,
+        metavar="A,B,C[,...]",
+        dest="peers",
+        help="three estimators or more: map how far they are apart at each vertex (their median "
+        "absolute deviation as one sigma); those that cannot estimate this mesh are left out",
+    )
 
 
 def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: bool = True) -> None:
@@ -171,6 +200,8 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
         from app.camera import parse
 
         changes["camera"] = parse(given["camera"])
+    if given.get("peers"):
+        changes["peers"] = tuple(Method(name) for name in given["peers"])
     if given.get("lights"):
         changes["lights"] = tuple(given["lights"])
     if given.get("scale"):
@@ -180,6 +211,7 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
     return state.replaced(start, **changes)
 
 
+_SEVERAL = ("disagreement", "all")
 _PLAIN = (
     "mesh",
     "mm_per_unit",
@@ -301,6 +333,13 @@ def _size(text: str) -> tuple[int, int]:
     if not (cross and width.isdigit() and height.isdigit()):
         raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT in pixels")
     return int(width), int(height)
+
+
+def _names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise argparse.ArgumentTypeError(f"{text!r} is not names with commas")
+    return names
 
 
 def _pair(text: str) -> tuple[float, float]:

@@ -8,7 +8,7 @@ vertex colours that a picture adds).
 import argparse
 
 from app.cli import options
-from app.cli.work import Run, percentiles
+from app.cli.work import Run
 
 
 def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -43,6 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from app import export
     from lutcore.color import auto_exposure
+    from lutcore.statistics import percentiles
 
     work = Run(arguments, options.session_from(arguments, view="shade"))
     work.require(".png", ".vtp", ".ply", ".npz")

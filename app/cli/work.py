@@ -5,8 +5,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from app import session as state
 from app.cli.console import answer, note, progress
 from app.pipeline import Pipeline
@@ -17,8 +15,6 @@ from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
     from app.picture import Picture
-
-PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
 
 
 class Run:
@@ -169,23 +165,3 @@ class Run:
         if self.arguments.save_session:
             state.write(self.session, self.arguments.save_session)
         answer(self.arguments, result, text)
-
-
-def percentiles(values: FloatArray) -> dict[str, float | None]:
-    """Return the percentiles of the finite values.
-
-    Parameters
-    ----------
-    values : ndarray
-        Any; infinite ones are left out.
-
-    Returns
-    -------
-    dict of str to float or None
-        ``p1`` to ``p99``; None where nothing is finite.
-    """
-    finite = values[np.isfinite(values)]
-    if finite.size == 0:
-        return {f"p{share}": None for share in PERCENTILES}
-    found = np.percentile(finite, PERCENTILES)
-    return {f"p{share}": float(value) for share, value in zip(PERCENTILES, found, strict=True)}

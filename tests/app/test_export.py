@@ -27,6 +27,7 @@ NAMES = {
     "shape_index",
     "curvedness",
     "curvature_error",
+    "curvature_scale",
 }
 
 
@@ -39,6 +40,14 @@ def test_the_names_scripts_rely_on(arrays):
     assert set(arrays) == NAMES | {"shading", "shading_srgb"}
     assert arrays["shading"].dtype == np.float32
     assert arrays["shading_srgb"].dtype == np.uint8
+
+
+def test_a_scale_is_one_number_a_vertex_and_a_disagreement_comes_where_there_is_one():
+    spread = RANDOM.random(4)
+    found = curvature_arrays(CURVATURES, spread)
+    np.testing.assert_array_equal(found["curvature_scale"], np.zeros(4))
+    np.testing.assert_array_equal(found["curvature_disagreement"], spread)
+    assert set(found) == NAMES | {"curvature_disagreement"}
 
 
 def test_npz_keeps_every_array_exactly(tmp_path, arrays):

@@ -67,6 +67,27 @@ def test_the_colour_bar_shows_its_map_from_bottom_to_top():
     assert colored[-1, 1] > colored[-1, 0]
 
 
+def test_rows_are_filled_from_the_top_and_the_left():
+    colors = [(200, 0, 0), (0, 200, 0), (0, 0, 200), (200, 200, 0)]
+    panels = [Panel(square(color=color), 0.5, CAMERA) for color in colors]
+    image = draw(panels, (200, 200), "black", rows=2)
+    seen = [image[y, x].tolist() for y in (45, 145) for x in (50, 150)]
+    assert seen == [list(color) for color in colors]
+
+
+def test_captions_of_one_picture_are_equally_large():
+    def captioned(*captions):
+        panels = [
+            Panel(Surface(SQUARE, NORMALS, caption=caption), 0.5, CAMERA) for caption in captions
+        ]
+        return draw(panels, (600, 1000), "black")[-45:, :300]
+
+    short = captioned("ab", "ab")
+    beside_long = captioned("ab", "a caption that needs much smaller letters than two")
+    rows = [np.count_nonzero(strip.any(axis=(1, 2))) for strip in (short, beside_long)]
+    assert 0 < rows[1] < rows[0]
+
+
 def test_drawing_without_opengl_is_refused_in_words(monkeypatch):
     monkeypatch.setattr(gl, "_loads", lambda library: library != "libEGL.so.1")
     monkeypatch.setattr(gl.sys, "platform", "linux")

@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lutcore.analytic import cylinder, saddle, sphere, torus
-from lutcore.diagnostics import diagnose
+from lutcore.diagnostics import diagnose, vertex_scales
 from lutcore.estimation import principal_curvatures
 from lutcore.mesh import TriangleMesh
 
@@ -47,6 +49,31 @@ def test_the_border_is_as_wide_as_the_scale():
     from_rim = np.minimum(height - height.min(), height.max() - height)
     assert found.border[from_rim < 0.45].all()
     assert not found.border[from_rim > 0.55].any()
+
+
+def test_the_border_is_as_wide_as_each_vertexs_own_scale():
+    exact = cylinder(3000, length=4.0)
+    x, _, height = exact.mesh.vertices.T
+    scales = np.where(x > 0.0, 0.8, 0.3)
+    found = diagnose(exact.mesh, replace(exact.truth, scale=scales))
+    from_rim = np.minimum(height - height.min(), height.max() - height)
+    # The nearest rim vertex is not always straight below: it is within half a spacing of that.
+    aside = 0.1
+    for side, reach in ((x > 0.1, 0.8), (x < -0.1, 0.3)):
+        assert found.border[side & (from_rim < reach - aside)].all()
+        assert not found.border[side & (from_rim > reach)].any()
+
+
+def test_one_scale_for_all_is_each_vertexs_scale():
+    truth = sphere(500).truth
+    np.testing.assert_array_equal(vertex_scales(truth), np.zeros(len(truth.k1)))
+    each = np.arange(float(len(truth.k1)))
+    np.testing.assert_array_equal(vertex_scales(replace(truth, scale=each)), each)
+
+
+def test_groups_without_vertices_are_not_listed():
+    exact = sphere(500)
+    assert list(diagnose(exact.mesh, exact.truth).groups) == ["interior"]
 
 
 def test_debris_and_unused_vertices_are_kept_apart():
