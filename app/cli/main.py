@@ -16,6 +16,8 @@ COMMANDS = {
     "curvature": "measure curvature: a picture, or data",
     "shade": "shade as a translucent material: a picture, or data",
     "compare": "shading models side by side",
+    "stability": "which estimators survive broken meshes, and by how much",
+    "chart": "speed against accuracy, and one recommendation",
     "lut": "a material's tables as npz, EXR or PNG",
     "models": "list shading models, curvature estimators and their parameters",
     "materials": "list materials",
