@@ -40,8 +40,8 @@ class BallJet(EstimatorParameters):
     References
     ----------
     F. Cazals, M. Pouget, Estimating differential quantities using polynomial fitting of
-    osculating jets, CAGD 22, 2005: the fit, its conditioning by scaling, and the curvatures from
-    the coefficients.
+    osculating jets, Computer Aided Geometric Design 22 (2), 2005: the fit, its conditioning by
+    scaling, the order of the bias, and the curvatures from the coefficients.
     """
 
     degree: int = param(3, 2, 3, "", "Degree of the polynomial: 2 (quadric) or 3 (cubic).")

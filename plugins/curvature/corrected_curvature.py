@@ -27,9 +27,9 @@ class CorrectedCurvature(EstimatorParameters):
 
     The scale is the measure's radius r, by default three spacings. Consistent on any
     triangulation whose normals are; here these are the vertex normals by area, so noise comes
-    in through them and leaves as 1/r only. The bias grows as r^2. Sheets that fold back within
-    r cancel. Where the corrected area vanishes nothing is estimated. The error is the spread
-    within the ball.
+    in through them and leaves as r^-1.5 only, where a jet's leaves as r^-3. The bias grows as
+    r^2. Sheets that fold back within r cancel. Where the corrected area vanishes nothing is
+    estimated. The error is the spread within the ball.
 
     References
     ----------

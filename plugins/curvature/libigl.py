@@ -22,15 +22,16 @@ _RING = 1.0746
 class Libigl(EstimatorParameters):
     """Quadric fitted to the vertices of some rings, by libigl.
 
-    Averages over its rings, so noise of a few per cent of an edge is borne; the bias grows with
-    their square. At borders the fit looks to one side only, and few neighbours make it wild. A
-    scale is met by the nearest number of rings. Where libigl reports a bad vertex nothing is
-    estimated. The error is the spread within the rings.
+    Averages over its rings, so noise of a few per cent of an edge is borne, but the quadric goes
+    through the vertex itself, whose own noise counts most; the bias grows with the square of the
+    rings. At borders the fit looks to one side only, and few neighbours make it wild. A scale is
+    met by the nearest number of rings. Where libigl reports a bad vertex nothing is estimated.
+    The error is the spread within the rings.
 
     References
     ----------
     D. Panozzo, E. Puppo, L. Rocca, Efficient multi-scale curvature and crease estimation,
-    GraVisMa 2010, section 3.
+    GraVisMa 2010, the paper that libigl names.
     """
 
     radius: int = param(5, 2, 60, "rings", "Rings of neighbours, where no scale is given.")

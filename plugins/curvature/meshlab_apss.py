@@ -19,16 +19,17 @@ _DEFAULT_SPACINGS = 4.0
 class MeshlabApss(EstimatorParameters):
     """Curvature of the surface that spheres fitted to neighbours leave, by MeshLab's APSS.
 
-    Uses positions and vertex normals; faces say nothing but the normals. The scale is the width
-    of the weights, by default four spacings; MeshLab measures it in each vertex's own spacing.
+    Uses positions and vertex normals; faces say nothing but the normals. The scale is the
+    distance at which weights end, by default four spacings; MeshLab measures it in each vertex's
+    own spacing.
     Sheets that lie closer than that are taken for one. MeshLab's "mean" is twice the mean, so K1
     and K2 are read; it tells no directions. The error is the spread within the scale.
 
     References
     ----------
-    G. Guennebaud, M. Gross, Algebraic point set surfaces, SIGGRAPH 2007, section 4;
+    G. Guennebaud, M. Gross, Algebraic point set surfaces, SIGGRAPH 2007;
     G. Guennebaud, M. Germann, M. Gross, Dynamic sampling and rendering of algebraic point set
-    surfaces, Eurographics 2008, section 4.
+    surfaces, Eurographics 2008: the papers that MeshLab names.
     """
 
     patience: float = patience()

@@ -18,9 +18,9 @@ class MeshlabDiscrete(EstimatorParameters):
     """Cotangent H and angle-defect K over mixed areas, by MeshLab's discrete curvatures.
 
     k = H +- sqrt(max(H^2 - K, 0)). Exact on clean, regular meshes; noise and irregular
-    triangles bring errors of any size, and at borders the sum of angles is taken for a full
-    turn. MeshLab tells no directions. The scale is ignored. The error is the spread among
-    neighbours.
+    triangles bring errors of any size. At borders H is of the order of 1/spacing even where the
+    surface is flat, and so is sqrt(K) where the border turns outwards. MeshLab tells no
+    directions. The scale is ignored. The error is the spread among neighbours.
 
     References
     ----------

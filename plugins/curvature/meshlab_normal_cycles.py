@@ -21,14 +21,15 @@ class MeshlabNormalCycles(EstimatorParameters):
     MeshLab gives the measure, angle times length, not its density. Each edge is counted at
     both its ends and holds (k1 + k2) for a third of its two faces, so the measure of a vertex is
     divided by two thirds of the area of its star. The measure along an axis is that of the
-    curvature across it: directions are exchanged. Random triangles bring tens of per cent; on a
-    cylinder whose edges run along its axis MeshLab takes the measure for degenerate and tells 0.
-    The scale is ignored. The error is the spread among neighbours.
+    curvature across it: directions are exchanged. Random triangles bring tens of per cent;
+    angles come from their sines, so a fold by more than a right angle counts as its supplement;
+    on a cylinder whose edges run along its axis MeshLab takes the measure for degenerate and
+    tells 0. The scale is ignored. The error is the spread among neighbours.
 
     References
     ----------
     D. Cohen-Steiner, J.-M. Morvan, Restricted Delaunay triangulations and normal cycle, SoCG
-    2003, section 4.
+    2003, the paper that MeshLab's source names.
     """
 
     patience: float = patience()

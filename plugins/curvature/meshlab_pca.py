@@ -14,13 +14,15 @@ from lutcore.progress import Progress
 class MeshlabPca(EstimatorParameters):
     """MeshLab's "Principal Component Analysis"; refused, for it holds no curvature to convert.
 
-    MeshLab puts the covariance of points of the surface into the formula for that of a solid
-    ball. What comes out is the same for spheres of radius 1 and 2 and for flipped faces: it
-    depends on the ball, not on the surface. Its directions alone are right.
+    MeshLab puts the covariance of points of the surface into the formula for that of the solid
+    within a ball. What comes out is the same for spheres of radius 1 and 2 and for flipped faces:
+    it depends on the ball, not on the surface. Even its directions are random on irregular
+    triangles, unless the ball holds many hundreds of vertices.
 
     References
     ----------
-    Y.-L. Yang et al., Robust principal curvatures on multiple scales, SGP 2006, section 3.
+    Y.-L. Yang, Y.-K. Lai, S.-M. Hu, H. Pottmann, Robust principal curvatures on multiple scales,
+    SGP 2006.
     """
 
     def estimate(

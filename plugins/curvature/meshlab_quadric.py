@@ -1,4 +1,4 @@
-"""Quadric fitted to the one-ring, by MeshLab."""
+"""Quadric fitted to two rings of neighbours, by MeshLab."""
 
 from dataclasses import dataclass
 
@@ -13,17 +13,17 @@ from plugins.curvature._foreign import foreign, patience
 @estimator_registry.register("meshlab-quadric")
 @dataclass(frozen=True)
 class MeshlabQuadric(EstimatorParameters):
-    """Quadric fitted to a vertex's nearest neighbours, by MeshLab's "Quadric Fitting".
+    """Quadric fitted to the vertices of two rings, by MeshLab's "Quadric Fitting".
 
-    Exact to some thousandths on clean meshes, regular or not; noise goes through unaveraged.
+    Exact to some thousandths on clean meshes, regular or not; noise is hardly averaged.
     MeshLab calls the larger value "min". Its directions are those of another pair of axes at
     every third vertex and are not used. It may crash where the surface is no manifold. The
     scale is ignored. The error is the spread among neighbours.
 
     References
     ----------
-    D. Panozzo, E. Puppo, L. Rocca, Efficient multi-scale curvature and crease estimation,
-    GraVisMa 2010, section 3, at the scale of one ring.
+    MeshLab names none; vcglib, class UpdateCurvatureFitting. The fit is that of libigl with two
+    rings, in a frame by another normal.
     """
 
     patience: float = patience()

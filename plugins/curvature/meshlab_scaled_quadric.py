@@ -26,7 +26,7 @@ class MeshlabScaledQuadric(EstimatorParameters):
     References
     ----------
     D. Panozzo, E. Puppo, L. Rocca, Efficient multi-scale curvature and crease estimation,
-    GraVisMa 2010, section 3.
+    GraVisMa 2010: vcglib's fit is the one that libigl has from this paper.
     """
 
     patience: float = patience()

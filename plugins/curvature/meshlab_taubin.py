@@ -23,7 +23,7 @@ class MeshlabTaubin(EstimatorParameters):
     References
     ----------
     G. Taubin, Estimating the tensor of curvature of a surface from a polyhedral approximation,
-    ICCV 1995, section 4.
+    ICCV 1995.
     """
 
     patience: float = patience()

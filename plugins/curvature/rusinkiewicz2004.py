@@ -19,16 +19,18 @@ from lutcore.tensors import Vector, symmetric_fit, tangent_frame, write_principa
 @estimator_registry.register("rusinkiewicz2004")
 @dataclass(frozen=True)
 class Rusinkiewicz2004(EstimatorParameters):
-    """One-ring estimator: the fastest, exact on clean meshes, useless on noisy ones.
+    """One-ring estimator: the fastest, exact on clean, regular meshes, useless on noisy ones.
 
-    The scale is ignored: the method knows only the ring. The error is the spread of the tensors
-    of the faces around a vertex.
+    Irregular triangles alone bring some per cent. The scale is ignored: the method knows only the
+    ring. The error is the spread of the tensors of the faces around a vertex.
 
     References
     ----------
-    S. Rusinkiewicz, Estimating curvatures and their derivatives on triangle meshes, 3DPVT 2004,
-    section 3. Vertex normals by Max 1999, areas by Meyer et al. 2003, section 3.3. The least
-    squares of section 3 are solved in closed form (`lutcore.tensors.symmetric_fit`).
+    S. Rusinkiewicz, Estimating curvatures and their derivatives on triangle meshes, 3DPVT 2004.
+    Vertex normals by N. Max (`lutcore.geometry.vertex_normals`), areas by M. Meyer et al.,
+    Discrete differential-geometry operators for triangulated 2-manifolds, Visualization and
+    Mathematics III, 2003, figure 4. The least squares of each face are solved in closed form
+    (`lutcore.tensors.symmetric_fit`).
     """
 
     def estimate(
@@ -54,7 +56,7 @@ _NORMAL, _AREA, _RECORD = 6, 9, 12
 def _face_records(
     vertices: FloatArray, faces: IndexArray, normals: FloatArray
 ) -> NDArray[np.float32]:
-    """Return tensor (section 3, the system of six rows), normal and areas of each face."""
+    """Return tensor (least squares over its three edges), normal and areas of each face."""
     records = np.empty((len(faces), _RECORD), np.float32)
     for face in prange(len(faces)):
         a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
@@ -116,7 +118,7 @@ def _corner_area(one: float, other: float, opposite: float, doubled: float) -> f
 def _vertex_tensors(
     start: IndexArray, corner: IndexArray, normals: FloatArray, records: NDArray[np.float32]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return k, directions and errors at the vertices (section 3, the change of basis)."""
+    """Return k, directions and errors at the vertices (faces' tensors, turned and averaged)."""
     count = len(normals)
     k = np.empty((2, count))
     directions = np.empty((2, count, 3))

@@ -21,15 +21,16 @@ class Trimesh(EstimatorParameters):
     """Normal-cycle measures of H and K in a ball around each vertex, by trimesh.
 
     The scale is the ball's radius r, by default three spacings. The measures are divided by
-    pi r^2, the area that any sphere has in such a ball; k = H +- sqrt(max(H^2 - K, 0)). The
-    measure of K jumps as vertices enter the ball, by 1/r of a vertex's share; near borders the
-    ball holds less surface and the sum of angles is taken for a full turn, so k is off by any
-    amount there. trimesh tells no directions. The error is the spread within the ball.
+    pi r^2, the area that any sphere has in such a ball; k = H +- sqrt(max(H^2 - K, 0)). Edges
+    count by their part inside, but vertices whole, so the measure of K jumps as one enters the
+    ball. Near borders the ball holds less surface and the sum of angles is taken for a full turn,
+    so k is off by any amount there. trimesh tells no directions. The error is the spread within
+    the ball.
 
     References
     ----------
     D. Cohen-Steiner, J.-M. Morvan, Restricted Delaunay triangulations and normal cycle, SoCG
-    2003, section 4.
+    2003, the paper that trimesh names.
     """
 
     patience: float = patience()

@@ -15,16 +15,16 @@ from plugins.curvature._foreign import foreign, patience
 class Vtk(EstimatorParameters):
     """One-ring estimator of VTK: H from angles between faces, K from the sum of angles.
 
-    k = H -+ sqrt(H^2 - K). Exact on clean, regular meshes. Noise sigma at spacing h brings an
-    error of some 2.2 sigma/h^2, so that denser scans get worse; irregular triangles alone bring
-    tens of per cent; at borders and at vertices of several fans the sum of angles is taken for
-    a full turn, and k is off by any amount. VTK tells no directions. The scale is ignored. The
-    error is the spread among neighbours.
+    k = H -+ sqrt(H^2 - K), or H twice where H^2 < K. Exact on clean, regular meshes. Noise sigma
+    at spacing h brings an error of some 2.2 sigma/h^2, so that denser scans get worse; irregular
+    triangles alone bring tens of per cent; at borders and at vertices of several fans the sum of
+    angles is taken for a full turn, and k is off by any amount. VTK tells no directions. The scale
+    is ignored. The error is the spread among neighbours.
 
     References
     ----------
-    VTK, class vtkCurvatures; N. Dyn et al., Optimizing 3D triangulations using discrete curvature
-    analysis, Mathematical Methods for Curves and Surfaces, 2001, section 3.
+    VTK, class vtkCurvatures by P. Batchelor, which names no paper; its documentation has the
+    formulas. H is the plain mean over the edges, K the angle defect over a third of the area.
     """
 
     patience: float = patience()
