@@ -8,7 +8,7 @@ import pyvista
 
 from app import export
 from app.session import FIGURE_LIGHTS
-from lutcore.arrays import finite
+from lutcore.arrays import FloatArray, finite
 from lutcore.color import auto_exposure
 from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight, Light

@@ -25,6 +25,8 @@ INTERIOR = len(_RINGS)
 _LEAST_CLASS = 30
 # Passes over one-rings that average the energies: a Gaussian of two spacings.
 _PASSES = 8
+# Bands that one loop averages together.
+_TOGETHER = 4
 # Vertices that vote on the noise of a class.
 _VOTERS = 100_000
 # The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
@@ -76,11 +78,13 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     """
     start, neighbour = on.operator.start, on.operator.neighbour
     middle = len(smoothed.scales) // 2
-    energy = _energies(smoothed.tensors, middle)
+    energy = _energies(smoothed.tensors, middle, _TOGETHER)
     spare = np.empty_like(energy)
+    links = (start.view(np.uint32), neighbour.view(np.uint32))
     for _ in range(_PASSES):
-        _average(start, neighbour, energy, spare)
+        _average(*links, energy, spare)
         energy, spare = spare, energy
+    energy = energy[:, : len(smoothed.scales) - 1]
     place = _places(start, neighbour, on.operator.rim)
     noise = _noise(energy, place, np.array(smoothed.scales) / on.spacing)
     # Beyond the last band the noise goes on fading as it did between the last two.
@@ -118,15 +122,19 @@ def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArr
 
 
 @compiled(parallel=True)
-def _energies(tensors: SingleArray, middle: int) -> SingleArray:
+def _energies(tensors: SingleArray, middle: int, together: int) -> SingleArray:
     """Return half the squared change of k1 and k2 from each scale to the next.
+
+    Filled up with zeros to a multiple of `together` bands.
 
     To first order k1 and k2 change by the entries of the difference on the diagonal of the
     principal frame, and by the one off it only where k1 and k2 are closer than it is large.
     """
     count, scales = tensors.shape[0], tensors.shape[1] - 1
-    energy = np.empty((count, scales), np.float32)
+    energy = np.empty((count, together * ((scales - 1) // together + 1)), np.float32)
     for i in prange(count):
+        for band in range(scales, energy.shape[1]):
+            energy[i, band] = 0.0
         k1, k2, c, s = principal(
             tensors[i, middle, 0], tensors[i, middle, 1], tensors[i, middle, 2]
         )
@@ -145,18 +153,27 @@ def _energies(tensors: SingleArray, middle: int) -> SingleArray:
     return energy
 
 
-@compiled(parallel=True)
+@compiled(parallel=True, packed=True)
 def _average(
-    start: IndexArray, neighbour: IndexArray, values: SingleArray, out: SingleArray
+    start: NDArray[np.uint32],
+    neighbour: NDArray[np.uint32],
+    values: SingleArray,
+    out: SingleArray,
 ) -> None:
-    """Write the mean of each vertex and its neighbours."""
+    """Write the mean of each vertex and its neighbours, four bands at a time."""
     for i in prange(len(values)):
         share = np.float32(1.0) / np.float32(1 + start[i + 1] - start[i])
-        for band in range(values.shape[1]):
-            total = values[i, band]
+        for band in range(0, values.shape[1], _TOGETHER):
+            s0, s1 = values[i, band], values[i, band + 1]
+            s2, s3 = values[i, band + 2], values[i, band + 3]
             for at in range(start[i], start[i + 1]):
-                total += values[neighbour[at], band]
-            out[i, band] = share * total
+                j = neighbour[at]
+                s0 += values[j, band]
+                s1 += values[j, band + 1]
+                s2 += values[j, band + 2]
+                s3 += values[j, band + 3]
+            out[i, band], out[i, band + 1] = share * s0, share * s1
+            out[i, band + 2], out[i, band + 3] = share * s2, share * s3
 
 
 def _places(start: IndexArray, neighbour: IndexArray, rim: BoolArray) -> NDArray[np.int8]:

@@ -129,14 +129,14 @@ def _tensors(
     base: int,
     point: float,
 ) -> tuple[FloatArray, SingleArray, SingleArray]:
-    count, scales = change.shape[0], change.shape[1]
+    count, scales = change.shape[1], change.shape[0]
     normals = np.empty((count, 3))
     tensors = np.empty((count, scales + 1, 3), np.float32)
     stretch = np.empty((count, scales + 1), np.float32)
     for i in prange(count):
-        nx = fields[i, 3] + change[i, base, 3]
-        ny = fields[i, 4] + change[i, base, 4]
-        nz = fields[i, 5] + change[i, base, 5]
+        nx = fields[i, 3] + change[base, i, 3]
+        ny = fields[i, 4] + change[base, i, 4]
+        nz = fields[i, 5] + change[base, i, 5]
         length = np.sqrt(nx * nx + ny * ny + nz * nz)
         if length < 0.1:  # smoothed over a closed blob: no side is outside any more
             nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
@@ -153,8 +153,8 @@ def _tensors(
                     dx = fields[j, axis] - fields[i, axis]
                     dn = fields[j, axis + 3] - fields[i, axis + 3]
                     if scale > 0:
-                        dx += change[j, scale - 1, axis] - change[i, scale - 1, axis]
-                        dn += change[j, scale - 1, axis + 3] - change[i, scale - 1, axis + 3]
+                        dx += change[scale - 1, j, axis] - change[scale - 1, i, axis]
+                        dn += change[scale - 1, j, axis + 3] - change[scale - 1, i, axis + 3]
                     xu, xv = xu + dx * u[axis], xv + dx * v[axis]
                     nu, nv = nu + dn * u[axis], nv + dn * v[axis]
                 cxx, cxy, cyy = cxx + xu * xu, cxy + xu * xv, cyy + xv * xv

@@ -52,7 +52,7 @@ def low_pass(
 
     Returns
     -------
-    ndarray of float32, shape=(n, S, 6)
+    ndarray of float32, shape=(S, n, 6)
         The changes, scale by scale.
 
     References
@@ -62,21 +62,22 @@ def low_pass(
     """
     series = [_series(scale, operator.bound) for scale in scales]
     terms = max(len(one) for one in series)
-    weights = np.zeros((terms, len(scales)), np.float32)
+    # An even number: terms are added to the scales in pairs, which halves the traffic to memory.
+    weights = np.zeros((terms + terms % 2, len(scales)), np.float32)
     for column, one in enumerate(series):
         weights[: len(one), column] = one
     # Unsigned: compiled loops need not ask whether an index counts from the end.
     links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
     before = _apply(*links, fields, 0.5 * operator.bound)
-    change = np.empty((len(before), len(scales), FIELDS), np.float32)
-    _begin(before, weights[0], change)
+    change = np.empty((len(scales), len(before), FIELDS), np.float32)
     now = np.zeros_like(before)
-    _step(*links, before, now, change, weights[1], np.float32(0.5))
-    for term in range(2, terms):
+    _step(*links, before, now, np.float32(0.5))
+    _begin(before, now, weights[0], weights[1], change)
+    for term in range(2, len(weights), 2):
         if term % 8 == 0:
             tell(progress, term / terms, "smoothing")
-        _step(*links, now, before, change, weights[term], np.float32(1.0))
-        now, before = before, now
+        _step(*links, now, before, np.float32(1.0))
+        _add_step(*links, before, now, change, weights[term], weights[term + 1])
     return change
 
 
@@ -154,11 +155,19 @@ def _series(scale: float, bound: float) -> FloatArray:
 
 
 @compiled(parallel=True)
-def _begin(values: SingleArray, weight: SingleArray, change: SingleArray) -> None:
-    for i in prange(len(values)):
+def _begin(
+    first: SingleArray,
+    second: SingleArray,
+    weight: SingleArray,
+    weight_after: SingleArray,
+    change: SingleArray,
+) -> None:
+    for i in prange(len(first)):
         for scale in range(len(weight)):
             for field in range(FIELDS):
-                change[i, scale, field] = weight[scale] * values[i, field]
+                change[scale, i, field] = (
+                    weight[scale] * first[i, field] + weight_after[scale] * second[i, field]
+                )
 
 
 @compiled(parallel=True)
@@ -188,11 +197,9 @@ def _step(
     rate: SingleArray,
     now: SingleArray,
     before: SingleArray,
-    change: SingleArray,
-    weight: SingleArray,
     half: np.float32,
 ) -> None:
-    """Replace T_{k-1} by T_{k+1} = 2 x T_k - T_{k-1} and add its share to every scale."""
+    """Replace T_{k-1} by T_{k+1} = 2 x T_k - T_{k-1}."""
     double = _TWO * half
     keep = double - np.float32(1.0)
     for i in prange(len(start) - 1):
@@ -208,20 +215,55 @@ def _step(
             s4 += w * now[j, 4]
             s5 += w * now[j, 5]
         r -= np.float32(1.0)
-        t0 = double * (r * now[i, 0] - s0) - keep * before[i, 0]
-        t1 = double * (r * now[i, 1] - s1) - keep * before[i, 1]
-        t2 = double * (r * now[i, 2] - s2) - keep * before[i, 2]
-        t3 = double * (r * now[i, 3] - s3) - keep * before[i, 3]
-        t4 = double * (r * now[i, 4] - s4) - keep * before[i, 4]
-        t5 = double * (r * now[i, 5] - s5) - keep * before[i, 5]
+        before[i, 0] = double * (r * now[i, 0] - s0) - keep * before[i, 0]
+        before[i, 1] = double * (r * now[i, 1] - s1) - keep * before[i, 1]
+        before[i, 2] = double * (r * now[i, 2] - s2) - keep * before[i, 2]
+        before[i, 3] = double * (r * now[i, 3] - s3) - keep * before[i, 3]
+        before[i, 4] = double * (r * now[i, 4] - s4) - keep * before[i, 4]
+        before[i, 5] = double * (r * now[i, 5] - s5) - keep * before[i, 5]
+
+
+@compiled(parallel=True, packed=True)
+def _add_step(
+    start: _Unsigned,
+    neighbour: _Unsigned,
+    rate: SingleArray,
+    now: SingleArray,
+    before: SingleArray,
+    change: SingleArray,
+    weight: SingleArray,
+    weight_after: SingleArray,
+) -> None:
+    """Do the same, and add the shares of T_k and T_{k+1} to every scale."""
+    for i in prange(len(start) - 1):
+        r = np.float32(0.0)
+        s0 = s1 = s2 = s3 = s4 = s5 = np.float32(0.0)
+        for at in range(start[i], start[i + 1]):
+            j, w = neighbour[at], rate[at]
+            r += w
+            s0 += w * now[j, 0]
+            s1 += w * now[j, 1]
+            s2 += w * now[j, 2]
+            s3 += w * now[j, 3]
+            s4 += w * now[j, 4]
+            s5 += w * now[j, 5]
+        r -= np.float32(1.0)
+        n0, n1, n2 = now[i, 0], now[i, 1], now[i, 2]
+        n3, n4, n5 = now[i, 3], now[i, 4], now[i, 5]
+        t0 = _TWO * (r * n0 - s0) - before[i, 0]
+        t1 = _TWO * (r * n1 - s1) - before[i, 1]
+        t2 = _TWO * (r * n2 - s2) - before[i, 2]
+        t3 = _TWO * (r * n3 - s3) - before[i, 3]
+        t4 = _TWO * (r * n4 - s4) - before[i, 4]
+        t5 = _TWO * (r * n5 - s5) - before[i, 5]
         before[i, 0], before[i, 1], before[i, 2] = t0, t1, t2
         before[i, 3], before[i, 4], before[i, 5] = t3, t4, t5
-        for scale in range(len(weight)):
-            c = weight[scale]
-            if c != np.float32(0.0):
-                change[i, scale, 0] += c * t0
-                change[i, scale, 1] += c * t1
-                change[i, scale, 2] += c * t2
-                change[i, scale, 3] += c * t3
-                change[i, scale, 4] += c * t4
-                change[i, scale, 5] += c * t5
+        for scale in range(len(change)):
+            c, d = weight[scale], weight_after[scale]
+            if c != np.float32(0.0) or d != np.float32(0.0):
+                change[scale, i, 0] += c * n0 + d * t0
+                change[scale, i, 1] += c * n1 + d * t1
+                change[scale, i, 2] += c * n2 + d * t2
+                change[scale, i, 3] += c * n3 + d * t3
+                change[scale, i, 4] += c * n4 + d * t4
+                change[scale, i, 5] += c * n5 + d * t5

@@ -65,7 +65,7 @@ def _apply(
     for i in prange(len(normals)):
         full = min(max((used[i] / spacing - _FROM) / (_FULL - _FROM), 0.0), 1.0)
         for entry in range(6):
-            space[i, entry] += full * change[i, 0, entry]
+            space[i, entry] += full * change[0, i, entry]
         xx, xy, yy = in_tangent_plane(normals[i], space[i])
         d = (xx - tensors[i, 0], xy - tensors[i, 1], yy - tensors[i, 2])
         square[i] += _STAYS * (0.5 * (d[0] * d[0] + d[2] * d[2]) + d[1] * d[1])

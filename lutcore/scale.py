@@ -89,8 +89,8 @@ def rungs(
     low, high = np.percentile(np.asarray(found.scale)[inner], _LEFT_OUT)
     # A scale is judged by the change to the next, so that one has to be there too.
     first = max(0, int(np.searchsorted(every, low * 1.001)) - 1)
-    last = min(count, int(np.searchsorted(every, high * 0.999)) + 2)
-    return every[min(first, last - 3) : last]
+    last = max(3, min(count, int(np.searchsorted(every, high * 0.999)) + 2))
+    return every[max(0, min(first, last - 3)) : last]
 
 
 def rungs_for(lengths: Sequence[float] | FloatArray) -> FloatArray:

@@ -28,6 +28,9 @@ _OWN, _LOUDEST = 1.0, 4.0
 # Nothing is known to be smooth over more than its radius of curvature: relative bias that is
 # assumed at (scale k)^4 = 1, with k at half the scale.
 _ROUND = 0.3
+# Of scales that are as good, or all good enough, the finer one: each costs as much as if its
+# squared error were larger by this.
+_DEARER = 1.3
 # Weights of scales fall with this power of their squared error, so that the choice has no seams.
 _SHARPNESS = 4
 # Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
@@ -184,7 +187,7 @@ def _mix(
                 costs[j] = errors[j] + (steadiness - 1.0) * heard
             if stretch[i, j] < _CLOSED or (j > 0 and stretch[i, j + 1] < _CLOSED):
                 errors[j] = costs[j] = np.inf
-            costs[j] += floor
+            costs[j] = max(costs[j], floor) * _DEARER**j
             best = min(best, costs[j])
         total = square[i] = used[i] = 0.0
         for j in range(count):

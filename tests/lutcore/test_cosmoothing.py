@@ -136,6 +136,14 @@ def test_a_large_mesh_tries_only_the_scales_that_its_patches_chose(monkeypatch):
     assert np.sqrt(np.mean((sampled.k1 - whole.k1) ** 2)) < 0.003 * size
 
 
+def test_a_large_mesh_without_noise_keeps_the_finest_scales(monkeypatch):
+    monkeypatch.setattr("lutcore.scale._WHOLE", 50_000)
+    exact = analytic.torus(60_000)
+    found = principal_curvatures(exact.mesh)
+    assert np.median(found.scale) <= 1.5 * surface(exact.mesh).spacing
+    assert np.abs(found.k1 - exact.truth.k1).max() < 1e-3 * exact.truth.k1.max()
+
+
 def test_scales_around_given_lengths():
     np.testing.assert_allclose(rungs_for([3.0]), [3.0 / ROOT, 3.0, 3.0 * ROOT])
     many = rungs_for([1.0, 7.0])

@@ -58,7 +58,7 @@ def test_islands_smaller_than_a_patch_still_choose_a_scale():
         count += len(mesh.vertices)
     mesh = TriangleMesh(np.vstack(vertices), np.vstack(faces))
     off = np.abs(principal_curvatures(mesh).k1 - 1.0)
-    assert np.sqrt(np.mean(off**2)) < 0.003  # the precision that `auto` aims at is .002
+    assert np.sqrt(np.mean(off**2)) < 0.004  # `auto` aims at a precision of .002
     assert off.max() < 0.04  # at the poles of the spirals, whose stars are uneven
 
 
@@ -68,7 +68,7 @@ def smoothed_noise(exact, share, length):
     edge = np.linalg.norm(points[faces] - points[np.roll(faces, 1, axis=1)], axis=2).mean()
     white = np.random.default_rng(0).standard_normal((len(points), 6))
     operator = surface(exact.mesh).operator
-    waves = (white + low_pass(operator, white, [length * edge])[:, 0])[:, 0]
+    waves = (white + low_pass(operator, white, [length * edge])[0])[:, 0]
     waves *= share * edge / waves.std()
     return TriangleMesh(points + waves[:, None] * exact.truth.normals, faces)
 
