@@ -28,7 +28,7 @@ _PASSES = 8
 # Bands that one loop averages together.
 _TOGETHER = 4
 # Vertices that vote on the noise of a class.
-_VOTERS = 100_000
+_VOTERS = 20_000
 # The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
 # here, the 25th percentile is this share of the mean.
 _QUARTER, _QUARTER_OF_MEAN = 25.0, 0.7
@@ -84,7 +84,7 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     for _ in range(_PASSES):
         _average(*links, energy, spare)
         energy, spare = spare, energy
-    energy = energy[:, : len(smoothed.scales) - 1]
+    energy = np.ascontiguousarray(energy[:, : len(smoothed.scales) - 1])
     place = _places(start, neighbour, on.operator.rim)
     noise = _noise(energy, place, np.array(smoothed.scales) / on.spacing)
     # Beyond the last band the noise goes on fading as it did between the last two.

@@ -120,7 +120,7 @@ def smooth(
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
 
-@compiled(parallel=True)
+@compiled(parallel=True, packed=True)
 def _tensors(
     start: IndexArray,
     neighbour: IndexArray,

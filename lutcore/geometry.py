@@ -122,7 +122,7 @@ def vertex_normals(mesh: TriangleMesh, corners: Corners) -> FloatArray:
     References
     ----------
     N. Max, Weights for computing vertex normals from facet normals, J. Graphics Tools 4 (2),
-    1999, eq. 2.
+    1999.
     """
     return _normals(mesh, corners, False)
 
@@ -307,7 +307,7 @@ def _vertex_normals(
             size = x * x + y * y + z * z
             if size == 0.0:
                 continue
-            weight = 1.0 if by_area else 1.0 / lengths  # Max 1999, eq. 2
+            weight = 1.0 if by_area else 1.0 / lengths  # Max 1999
             nx, ny, nz = nx + weight * x, ny + weight * y, nz + weight * z
             if size > largest:
                 largest, mx, my, mz = size, x, y, z

@@ -7,8 +7,8 @@ from lutcore.compiled import compiled
 from lutcore.cosmoothing import Surface
 from lutcore.laplacian import Laplacian
 
-# Wide against the longest scale that is tried on them.
-_PATCH, _PATCHES, _SEEDS = 12_000, 3, 97
+# Wide against the longest scale that is tried on them, and little work against the whole mesh.
+_LEAST_PATCH, _LARGEST_PATCH, _PATCHES, _SEEDS = 4_000, 12_000, 3, 97
 _LEAST_STAR = 3
 
 
@@ -18,7 +18,7 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
     Parameters
     ----------
     on : Surface
-        A mesh of more vertices than the discs have together, 36,000.
+        A mesh of more vertices than the discs have together, 12,000.
 
     Returns
     -------
@@ -31,7 +31,8 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
     # Seeds in an order that spreads them: multiples of a number prime to their count.
     seeds = (np.arange(_SEEDS) * 36 % _SEEDS * count // _SEEDS).astype(np.int32)
     operator = on.operator
-    order, inner = _grow(operator.start, operator.neighbour, seeds, _PATCH, _PATCHES)
+    size = min(max(count // 25, _LEAST_PATCH), _LARGEST_PATCH)
+    order, inner = _grow(operator.start, operator.neighbour, seeds, size, _PATCHES)
     number = np.full(count, -1, np.int32)
     number[order] = np.arange(len(order), dtype=np.int32)
     owner = np.repeat(np.arange(len(order)), np.diff(operator.start)[order])
@@ -76,6 +77,6 @@ def _grow(
                     order[filled] = other
                     filled += 1
             at += 1
-        # A disc of 12,000 vertices is 62 spacings wide: its inner third ends 26 from its rim.
+        # A disc of 4,000 vertices has a radius of 36 spacings; its inner third ends 15 inside.
         inner[first : first + max(1, (filled - first) // 3)] = True
     return order[:filled], inner[:filled]

@@ -48,7 +48,9 @@ def refined(
 def _in_space(normals: FloatArray, tensors: FloatArray) -> FloatArray:
     space = np.empty((len(normals), 6))
     for i in prange(len(normals)):
-        space[i] = in_space(normals[i], tensors[i])
+        xx, xy, xz, yy, yz, zz = in_space(normals[i], tensors[i])
+        space[i, 0], space[i, 1], space[i, 2] = xx, xy, xz
+        space[i, 3], space[i, 4], space[i, 5] = yy, yz, zz
     return space
 
 

@@ -1,7 +1,5 @@
 """The scales at which a mesh's curvature is worth asking for."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from lutcore.arrays import FloatArray
@@ -10,17 +8,21 @@ from lutcore.geometry import typical_spacing
 from lutcore.mesh import TriangleMesh
 from lutcore.patches import patches
 from lutcore.progress import Progress, silent
-from lutcore.selection import select
+from lutcore.selection import scales_chosen
 from lutcore.weld import weld
 
 # From hardly more than the star to the longest that is worth its time, in spacings.
 _RUNGS = 2.0 ** (0.5 * np.arange(9.0))
 # Meshes of more vertices try the rungs on patches first.
-_WHOLE = 100_000
+_WHOLE = 30_000
 # Vertices of the patches whose choice may fall outside the rungs that are kept.
-_LEFT_OUT = (0.5, 99.0)
+_LEFT_OUT = (2.0, 95.0)
+# A choice this close to a rung, in rungs, is that rung.
+_NEAR = 0.3
 # No scale that `auto` tries is longer than this share of the mesh.
 _WIDEST = 0.25
+# Spacings below which no scale is resolved, and up to which noise has to be listened to.
+_FINEST, _HEARD = 0.5, 2.0
 # Spacings below which shading shows the noise of a laser scan.
 _SHADING = 3.0
 # No scale that shading chooses by itself is longer than this share of the mesh: where light
@@ -84,29 +86,55 @@ def rungs(
     if len(on.fields) <= _WHOLE:
         return every
     part, inner = patches(on)
+    if not inner.any():  # nothing but specks
+        return every
     smoothed = smooth(part, every.tolist(), count // 2, progress)
-    found = select(part, smoothed, None, precision, steadiness)
-    low, high = np.percentile(np.asarray(found.scale)[inner], _LEFT_OUT)
+    used = scales_chosen(part, smoothed, precision, steadiness)
+    low, high = np.percentile(used[inner], _LEFT_OUT)
     # A scale is judged by the change to the next, so that one has to be there too.
-    first = max(0, int(np.searchsorted(every, low * 1.001)) - 1)
-    last = max(3, min(count, int(np.searchsorted(every, high * 0.999)) + 2))
+    place = 2.0 * np.log2(np.maximum([low, high], every[0]) / every[0])
+    first = int(place[0] + _NEAR) - 1
+    last = max(3, min(count, int(np.ceil(place[1] - _NEAR)) + 2))
     return every[max(0, min(first, last - 3)) : last]
 
 
-def rungs_for(lengths: Sequence[float] | FloatArray) -> FloatArray:
+def rungs_for(lengths: FloatArray, spacing: float) -> FloatArray:
     """Return the scales that answer at given lengths.
 
     Parameters
     ----------
-    lengths : array_like of float
-        Lengths wanted, mesh units.
+    lengths : ndarray
+        Lengths wanted, mesh units; from `resolved`.
+    spacing : float
+        The mesh's.
 
     Returns
     -------
     ndarray
-        Scales that grow by sqrt(2) or less, one below and one above all lengths.
+        Scales that grow by sqrt(2) or less, one below and one above all lengths, and on to two
+        spacings: from less than that nothing tells noise from shape.
     """
     low, high = float(np.min(lengths)), float(np.max(lengths))
     steps = int(np.ceil(2.0 * np.log2(high / low) - 1e-9))
-    between = np.geomspace(low, high, steps + 1)
-    return np.concatenate(([low / 2.0**0.5], between, [high * 2.0**0.5]))
+    scales = [low / 2.0**0.5, *np.geomspace(low, high, steps + 1), high * 2.0**0.5]
+    while scales[-1] < _HEARD * spacing:
+        scales.append(scales[-1] * 2.0**0.5)
+    return np.array(scales)
+
+
+def resolved(lengths: FloatArray | float, spacing: float) -> FloatArray:
+    """Return lengths that a mesh can resolve.
+
+    Parameters
+    ----------
+    lengths : float or ndarray
+        Lengths wanted, mesh units.
+    spacing : float
+        The mesh's.
+
+    Returns
+    -------
+    ndarray
+        The same, but half a spacing where they are less: the star alone averages over that.
+    """
+    return np.maximum(lengths, _FINEST * spacing)

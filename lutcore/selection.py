@@ -98,23 +98,9 @@ def select(
         One value for each vertex, with the scale that was used there.
     """
     tell(progress, 0.0, "telling noise from bias")
-    found = bands(on, smoothed)
-    tell(progress, 0.4, "choosing scales")
-    scales = np.array(smoothed.scales[:-1])
-    size = _typical_square(smoothed)
-    wanted = np.broadcast_to(np.asarray(0.0 if lengths is None else lengths, float), len(on.fields))
-    tensors, square, used = _mix(
-        smoothed.tensors,
-        smoothed.stretch,
-        *found,
-        scales,
-        wanted,
-        precision * precision * size,
-        steadiness,
-        1.0 / on.spacing,
-    )
+    tensors, square, used, place = _chosen(on, smoothed, lengths, precision, steadiness)
     links = (on.operator.start, on.operator.neighbour)
-    weak = np.flatnonzero((used < 0.0) | (found.place <= _RIM)).astype(np.int32)
+    weak = np.flatnonzero((used < 0.0) | (place <= _RIM)).astype(np.int32)
     borrow(*links, smoothed.normals, weak, used[weak] < 0.0, tensors, square)
     np.maximum(used, 0.0, out=used)
     tell(progress, 0.6, "joining scales")
@@ -126,6 +112,49 @@ def select(
     return PrincipalCurvatures(
         k[0], k[1], directions[0], directions[1], smoothed.normals, error, used
     )
+
+
+def scales_chosen(
+    on: Surface, smoothed: Smoothed, precision: float, steadiness: float
+) -> FloatArray:
+    """Return the scale that each vertex chooses.
+
+    Parameters
+    ----------
+    on, smoothed, precision, steadiness
+        As in `select`.
+
+    Returns
+    -------
+    ndarray, shape=(n,)
+        Mesh units; -1 where every star has closed.
+    """
+    return _chosen(on, smoothed, None, precision, steadiness)[2]
+
+
+def _chosen(
+    on: Surface,
+    smoothed: Smoothed,
+    lengths: FloatArray | float | None,
+    precision: float,
+    steadiness: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int8]]:
+    """Return tensors, squared errors and scales as `_mix` does, and the vertices' classes."""
+    found = bands(on, smoothed)
+    wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
+    if lengths is not None:
+        wanted[:] = lengths
+    mixed = _mix(
+        smoothed.tensors,
+        smoothed.stretch,
+        *found,
+        np.array(smoothed.scales[:-1]),
+        wanted,
+        precision * precision * _typical_square(smoothed),
+        steadiness,
+        1.0 / on.spacing,
+    )
+    return *mixed, found.place
 
 
 def _typical_square(smoothed: Smoothed) -> float:

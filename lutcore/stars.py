@@ -19,8 +19,9 @@ class Stars(NamedTuple):
     areas : ndarray, shape=(n,)
         A third of the area of the star, mesh unit squared.
     fields : ndarray, shape=(n, 6)
-        Position and unit normal, both as means over the star weighted by area. Where the faces
-        cancel (a double-sided sheet), the largest face's normal.
+        Position and unit normal. The normal is the mean over the star weighted by area; where the
+        faces cancel (a double-sided sheet), the largest face's. The position is moved along the
+        tangent plane to the star's mean.
     """
 
     areas: FloatArray

@@ -27,7 +27,7 @@ def tangent_frame(x: float, y: float, z: float) -> tuple[Vector, Vector]:
 
     References
     ----------
-    T. Duff et al., Building an orthonormal basis, revisited, JCGT 6 (1), 2017, listing 3.
+    T. Duff et al., Building an orthonormal basis, revisited, JCGT 6 (1), 2017.
     """
     sign = 1.0 if z >= 0.0 else -1.0
     a = -1.0 / (sign + z)
@@ -135,7 +135,9 @@ def write_principal(
 
 
 @compiled()
-def in_space(normal: FloatArray, tensor: FloatArray) -> FloatArray:
+def in_space(
+    normal: FloatArray, tensor: FloatArray
+) -> tuple[float, float, float, float, float, float]:
     """Return a tangent tensor as one of space, which can be added to those of other planes.
 
     Parameters
@@ -147,21 +149,25 @@ def in_space(normal: FloatArray, tensor: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray, shape=(6,)
+    tuple of float
         Entries xx, xy, xz, yy, yz, zz.
     """
     u, v = tangent_frame(normal[0], normal[1], normal[2])
-    out = np.empty(6)
-    at = 0
-    for a in range(3):
-        for b in range(a, 3):
-            out[at] = (
-                tensor[0] * u[a] * u[b]
-                + tensor[1] * (u[a] * v[b] + v[a] * u[b])
-                + tensor[2] * v[a] * v[b]
-            )
-            at += 1
-    return out
+    return (
+        _entry(tensor, u, v, 0, 0),
+        _entry(tensor, u, v, 0, 1),
+        _entry(tensor, u, v, 0, 2),
+        _entry(tensor, u, v, 1, 1),
+        _entry(tensor, u, v, 1, 2),
+        _entry(tensor, u, v, 2, 2),
+    )
+
+
+@compiled()
+def _entry(tensor: FloatArray, u: Vector, v: Vector, a: int, b: int) -> float:
+    return (
+        tensor[0] * u[a] * u[b] + tensor[1] * (u[a] * v[b] + v[a] * u[b]) + tensor[2] * v[a] * v[b]
+    )
 
 
 @compiled()

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from lutcore.arrays import FloatArray
 from lutcore.cosmoothing import smooth, surface
 from lutcore.curvature import PrincipalCurvatures
@@ -12,7 +10,7 @@ from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import param
 from lutcore.progress import Progress, part
-from lutcore.scale import rungs, rungs_for
+from lutcore.scale import resolved, rungs, rungs_for
 from lutcore.selection import select
 
 
@@ -29,7 +27,7 @@ class Auto(EstimatorParameters):
     per_vertex: ClassVar[bool] = True
 
     precision: float = param(
-        0.002,
+        0.004,
         0.0,
         1.0,
         "",
@@ -53,7 +51,8 @@ class Auto(EstimatorParameters):
             told = part(progress, 0.2, 0.3)
             scales = rungs(on, mesh.diagonal, self.precision, self.steadiness, told)
         else:
-            scales = rungs_for(np.ravel(scale))
+            scale = resolved(scale, on.spacing)
+            scales = rungs_for(scale, on.spacing)
         smoothed = smooth(on, scales.tolist(), len(scales) // 2, part(progress, 0.3, 0.8))
         told = part(progress, 0.8, 1.0)
         return select(on, smoothed, scale, self.precision, self.steadiness, told)

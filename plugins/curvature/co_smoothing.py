@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from lutcore.arrays import FloatArray
 from lutcore.cosmoothing import smooth, surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part
-from lutcore.scale import rungs_for
+from lutcore.scale import resolved, rungs_for
 from lutcore.selection import select
 
 # Without a scale: enough to hide 1 % noise, little enough to keep features of ten edges.
@@ -36,7 +34,7 @@ class CoSmoothing(EstimatorParameters):
     ) -> PrincipalCurvatures:
         """Estimate the principal curvatures; see `lutcore.curvature.Estimator`."""
         on = surface(mesh, part(progress, 0.0, 0.2))
-        length = _DEFAULT_SPACINGS * on.spacing if scale is None else scale
-        scales = rungs_for(np.ravel(length))
+        length = resolved(_DEFAULT_SPACINGS * on.spacing if scale is None else scale, on.spacing)
+        scales = rungs_for(length, on.spacing)
         smoothed = smooth(on, scales.tolist(), len(scales) // 2, part(progress, 0.2, 0.8))
         return select(on, smoothed, length, progress=part(progress, 0.8, 1.0))

@@ -3,7 +3,19 @@
 import subprocess
 import sys
 
-SCRIPTS = ("start", "shading_accuracy", "shading_speed", "curvature", "loading_speed", "pictures")
+SCRIPTS = (
+    "start",
+    "first_call",
+    "shading_accuracy",
+    "shading_speed",
+    "curvature",
+    "error_bars",
+    "steadiness",
+    "growth",
+    "bandwidth",
+    "loading_speed",
+    "pictures",
+)
 
 
 def main() -> None:

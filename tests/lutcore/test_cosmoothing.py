@@ -145,11 +145,44 @@ def test_a_large_mesh_without_noise_keeps_the_finest_scales(monkeypatch):
 
 
 def test_scales_around_given_lengths():
-    np.testing.assert_allclose(rungs_for([3.0]), [3.0 / ROOT, 3.0, 3.0 * ROOT])
-    many = rungs_for([1.0, 7.0])
+    np.testing.assert_allclose(rungs_for(np.array(3.0), 1.0), [3.0 / ROOT, 3.0, 3.0 * ROOT])
+    many = rungs_for(np.array([1.0, 7.0]), 1.0)
     assert many[0] == pytest.approx(1.0 / ROOT)
     assert many[-1] == pytest.approx(7.0 * ROOT)
     assert (many[1:] / many[:-1] <= ROOT * (1.0 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e-6, 0.01])
+def test_noise_is_heard_however_short_the_scale(length):
+    exact = analytic.sphere(2_000)
+    found = principal_curvatures(exact.noisy(0.05), "co-smoothing", length)
+    assert (found.scale > 0.2 * surface(exact.mesh).spacing).all()  # what it really is, not 1e-300
+    apart = np.concatenate([np.abs(found.k1 - 1.0), np.abs(found.k2 - 1.0)])
+    # Without averaging the bars are those of a class, not of a vertex: less than 95 %.
+    assert np.mean(apart < 2.0 * np.tile(found.error, 2)) > 0.65
+
+
+def test_nothing_but_specks_is_no_fault(monkeypatch):
+    monkeypatch.setattr("lutcore.scale._WHOLE", 1_000)
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    places = 3.0 * np.arange(20_000)[:, None, None] * [1.0, 0.0, 0.0]
+    points = (corners + places).reshape(-1, 3)
+    found = principal_curvatures(TriangleMesh(points, np.arange(len(points)).reshape(-1, 3)))
+    assert np.isfinite(found.k1).all()
+    assert (found.error >= 1.0 / 3.0).all()
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.02])
+def test_a_closed_speck_keeps_what_its_stars_say(radius):
+    ball = analytic.sphere(40, radius=radius).mesh
+    sheet = analytic.saddle(400, k=(0.0, 0.0)).mesh
+    points = np.vstack([ball.vertices + [0.0, 0.0, 2.0 * radius], sheet.vertices])
+    faces = np.vstack([ball.faces, sheet.faces + len(ball.vertices)])
+    for mesh in (ball, TriangleMesh(points, faces)):
+        found = principal_curvatures(mesh)
+        assert np.isfinite([found.k1, found.k2]).all()
+        there = slice(0, len(ball.vertices))
+        assert np.median(found.k1[there]) * radius == pytest.approx(1.0, rel=0.3)
 
 
 @pytest.mark.parametrize("method", ["auto", "co-smoothing"])
