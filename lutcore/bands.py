@@ -27,15 +27,20 @@ _LEAST_CLASS = 30
 _PASSES = 8
 # Bands that one loop averages together.
 _TOGETHER = 4
+# Stands for no energy at all, mesh sizes being about 1.
+_NONE = 1e-30
+# Bounds of the areas over their median that noise follows.
+_ROOM = (0.125, 8.0)
 # Vertices that vote on the noise of a class.
 _VOTERS = 20_000
 # The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
 # here, the 25th percentile is this share of the mean.
 _QUARTER, _QUARTER_OF_MEAN = 25.0, 0.7
-# Noise is alike everywhere: of pure noise the 75th percentile is 1.6 to 2.2 times the 25th. Where
-# it is more, and at more spacings than neighbours' noise may be correlated over, energy that does
-# not fade from band to band by at least this factor (white noise: 4 to 8) is not noise.
-_ALIKE, _CORRELATED = 3.0, 4.1
+# Noise is alike everywhere: of pure noise the 75th percentile is 1.6 to 2.2 times the 25th. The
+# more it is, from the first to the second of these, and at more spacings than neighbours' noise may
+# be correlated over, energy that does not fade from band to band by at least a factor (white noise:
+# 4 to 8) is not noise.
+_ALIKE, _UNLIKE, _CORRELATED = 2.5, 6.0, 4.1
 _FADING, _FADING_AT_RIM = 4.0, 2.5
 
 
@@ -47,15 +52,19 @@ class Bands(NamedTuple):
     energy : ndarray of float32, shape=(n, S)
         Mean square of a principal curvature's change from each scale to the next, averaged over
         the neighbourhood, 1/mesh unit squared.
+    room : ndarray of float32, shape=(n,)
+        Vertex area over the median, averaged likewise: what white noise of a scale that spans
+        several vertices is in proportion to.
     place : ndarray of int8, shape=(n,)
         Class of each vertex by its distance from the rim.
     noise : ndarray, shape=(INTERIOR + 1, S)
-        The part of a class's energy that is noise.
+        The part of a class's energy that is noise, where `room` is 1.
     left : ndarray, shape=(INTERIOR + 1, S)
         Noise of the curvature itself at each scale: that of its band and of all coarser ones.
     """
 
     energy: SingleArray
+    room: SingleArray
     place: NDArray[np.int8]
     noise: FloatArray
     left: FloatArray
@@ -78,62 +87,72 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     """
     start, neighbour = on.operator.start, on.operator.neighbour
     middle = len(smoothed.scales) // 2
-    energy = _energies(smoothed.tensors, middle, _TOGETHER)
+    count = len(smoothed.scales) - 1
+    energy = _energies(smoothed.tensors, on.areas / on.spacing**2, middle, _TOGETHER)
     spare = np.empty_like(energy)
     links = (start.view(np.uint32), neighbour.view(np.uint32))
     for _ in range(_PASSES):
         _average(*links, energy, spare)
         energy, spare = spare, energy
-    energy = np.ascontiguousarray(energy[:, : len(smoothed.scales) - 1])
+    room = np.clip(energy[:, count], *_ROOM)
+    energy = np.ascontiguousarray(energy[:, :count])
     place = _places(start, neighbour, on.operator.rim)
-    noise = _noise(energy, place, np.array(smoothed.scales) / on.spacing)
+    noise = _noise(energy, room, place, np.array(smoothed.scales) / on.spacing)
     # Beyond the last band the noise goes on fading as it did between the last two.
     ratio = np.clip(noise[:, -1] / noise[:, -2], 0.1, 0.6)
     left = (
         np.cumsum(noise[:, ::-1], axis=1)[:, ::-1] + (noise[:, -1] * ratio / (1 - ratio))[:, None]
     )
-    return Bands(energy, place, noise, left)
+    return Bands(energy, room, place, noise, left)
 
 
-def _noise(energy: SingleArray, place: NDArray[np.int8], spacings: FloatArray) -> FloatArray:
-    """Return the part of each class's energy that is noise."""
+def _noise(
+    energy: SingleArray, room: SingleArray, place: NDArray[np.int8], spacings: FloatArray
+) -> FloatArray:
+    """Return the part of each class's energy that is noise, where room is 1."""
     noise = np.empty((INTERIOR + 1, energy.shape[1]))
     for kind in (INTERIOR, *range(INTERIOR)):
         members = np.flatnonzero(place == kind)
-        if len(members) >= _LEAST_CLASS:
-            voters = energy[members[:: 1 + len(members) // _VOTERS]]
-        elif kind == INTERIOR:
-            voters = energy
-        else:
-            noise[kind] = noise[INTERIOR]
-            continue
+        if len(members) < _LEAST_CLASS:
+            if kind != INTERIOR:
+                noise[kind] = noise[INTERIOR]
+                continue
+            members = np.arange(len(energy))
+        members = members[:: 1 + len(members) // _VOTERS]
+        voters = energy[members]
+        voters[:, 1:] /= room[members, None]
         noise[kind] = _faded(voters, spacings, _FADING if kind == INTERIOR else _FADING_AT_RIM)
-    return np.maximum(noise, 1e-30)
+    return noise
 
 
 def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArray:
     """Return the noise in the bands of one class."""
-    quiet, loud = np.percentile(voters, (_QUARTER, 100.0 - _QUARTER), axis=0)
+    quiet, loud = np.percentile(voters, (_QUARTER, 100.0 - _QUARTER), axis=0) + _NONE
     noise = quiet / _QUARTER_OF_MEAN
     for band in range(1, len(noise)):
-        if loud[band] > _ALIKE * quiet[band] or spacings[band] > _CORRELATED:
-            noise[band] = min(noise[band], noise[band - 1] / fading)
+        apart = np.log(loud[band] / quiet[band])
+        doubt = np.interp(apart, np.log([_ALIKE, _UNLIKE]), [0.0, 1.0])
+        if spacings[band] > _CORRELATED:
+            doubt = 1.0
+        faded = min(1.0, noise[band - 1] / fading / noise[band])
+        noise[band] *= faded**doubt
     return noise
 
 
 @compiled(parallel=True)
-def _energies(tensors: SingleArray, middle: int, together: int) -> SingleArray:
-    """Return half the squared change of k1 and k2 from each scale to the next.
+def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: int) -> SingleArray:
+    """Return half the squared change of k1 and k2 from each scale to the next, then the areas.
 
-    Filled up with zeros to a multiple of `together` bands.
+    Filled up with zeros to a multiple of `together` columns.
 
     To first order k1 and k2 change by the entries of the difference on the diagonal of the
     principal frame, and by the one off it only where k1 and k2 are closer than it is large.
     """
     count, scales = tensors.shape[0], tensors.shape[1] - 1
-    energy = np.empty((count, together * ((scales - 1) // together + 1)), np.float32)
+    energy = np.empty((count, together * (scales // together + 1)), np.float32)
     for i in prange(count):
-        for band in range(scales, energy.shape[1]):
+        energy[i, scales] = areas[i]
+        for band in range(scales + 1, energy.shape[1]):
             energy[i, band] = 0.0
         k1, k2, c, s = principal(
             tensors[i, middle, 0], tensors[i, middle, 1], tensors[i, middle, 2]

@@ -9,7 +9,7 @@ from lutcore.tensors import in_space, in_tangent_plane
 # Passes of the iteration: reaches that many rings, more than a corner of a rim closes.
 _PASSES = 16
 # Squared error that remains, over what the sums say: changes are not the same everywhere.
-_CAUTION = 2.0
+_CAUTION = 3.0
 # Pairs of neighbours that tell how fast curvature changes.
 _PAIRS = 20_000
 

@@ -23,6 +23,10 @@ from lutcore.tensors import symmetric_fit, tangent_frame
 
 # A star narrower than this, in spacings, is a point to single precision.
 _POINT = 1e-4
+# Pairs of a star count by 1/(distance^2 + this, in spacings): as directions, but for those so close
+# that their noise would be multiplied. Counted alike, the far ends of long triangles would tell how
+# curvature changes in place of what it is: k1 of a tube of 8:1 triangles came out 28 % too small.
+_NEAR = 0.1
 
 
 @dataclass(frozen=True)
@@ -31,15 +35,21 @@ class Surface:
 
     Parameters
     ----------
+    points : ndarray, shape=(n, 3)
+        Positions of the vertices.
     fields : ndarray, shape=(n, 6)
-        Positions and unit normals.
+        Mean positions and unit normals of their stars.
+    areas : ndarray, shape=(n,)
+        Vertex areas, mesh units squared.
     operator : Laplacian
-        What smooths them.
+        What smooths the fields.
     spacing : float
         Square root of the median vertex area, mesh units.
     """
 
+    points: FloatArray
     fields: FloatArray
+    areas: FloatArray
     operator: Laplacian
     spacing: float
 
@@ -88,7 +98,8 @@ def surface(mesh: TriangleMesh, progress: Progress = silent) -> Surface:
     areas, fields = stars(mesh, corners)
     typical = median_vertex_area(areas)
     tell(progress, 0.4, "weighing neighbours")
-    return Surface(fields, laplacian(mesh, corners, areas, typical), float(np.sqrt(typical)))
+    operator = laplacian(mesh, corners, areas, typical)
+    return Surface(mesh.vertices, fields, areas, operator, float(np.sqrt(typical)))
 
 
 def smooth(
@@ -115,7 +126,7 @@ def smooth(
     change = low_pass(on.operator, on.fields, scales, part(progress, 0.0, 0.7))
     tell(progress, 0.7, "fitting shape operators")
     normals, tensors, stretch = _tensors(
-        on.operator.start, on.operator.neighbour, on.fields, change, base, _POINT * on.spacing
+        on.operator.start, on.operator.neighbour, on.fields, change, base, on.spacing
     )
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
@@ -127,9 +138,11 @@ def _tensors(
     fields: FloatArray,
     change: SingleArray,
     base: int,
-    point: float,
+    spacing: float,
 ) -> tuple[FloatArray, SingleArray, SingleArray]:
     count, scales = change.shape[1], change.shape[0]
+    unit = spacing * spacing
+    point, near = _POINT * _POINT * unit, _NEAR * unit
     normals = np.empty((count, 3))
     tensors = np.empty((count, scales + 1, 3), np.float32)
     stretch = np.empty((count, scales + 1), np.float32)
@@ -149,21 +162,25 @@ def _tensors(
             for at in range(start[i], start[i + 1]):
                 j = neighbour[at]
                 xu = xv = nu = nv = 0.0
+                weight = near
                 for axis in range(3):
                     dx = fields[j, axis] - fields[i, axis]
                     dn = fields[j, axis + 3] - fields[i, axis + 3]
+                    weight += dx * dx
                     if scale > 0:
                         dx += change[scale - 1, j, axis] - change[scale - 1, i, axis]
                         dn += change[scale - 1, j, axis + 3] - change[scale - 1, i, axis + 3]
                     xu, xv = xu + dx * u[axis], xv + dx * v[axis]
                     nu, nv = nu + dn * u[axis], nv + dn * v[axis]
-                cxx, cxy, cyy = cxx + xu * xu, cxy + xu * xv, cyy + xv * xv
-                bxx, bxy, byy = bxx + nu * xu, bxy + 0.5 * (nu * xv + nv * xu), byy + nv * xv
+                weight = unit / weight
+                pu, pv = weight * xu, weight * xv
+                cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
+                bxx, bxy, byy = bxx + nu * pu, bxy + 0.5 * (nu * pv + nv * pu), byy + nv * pv
             least = 0.5 * (cxx + cyy) - np.hypot(0.5 * (cxx - cyy), cxy)
             if scale == 0:
                 open_before = max(least, 1e-12 * (cxx + cyy))
             stretch[i, scale] = np.sqrt(max(least, 0.0) / open_before)
-            if cxx + cyy < point * point:
+            if cxx + cyy < point:
                 stretch[i, scale] = 0.0
                 cxx = cxy = cyy = 0.0
             s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)

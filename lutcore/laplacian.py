@@ -10,6 +10,7 @@ from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.geometry import Corners, edge, other_two
 from lutcore.mesh import TriangleMesh
+from lutcore.rings import neighbours, slot_of
 
 # Cotangent weights are kept in this range: below, obtuse pairs would break the maximum
 # principle; above, slivers would bind their ends rigidly.
@@ -68,16 +69,14 @@ def laplacian(
     Laplacian
         Symmetric in the inner product of its masses except for the rows of the rim.
     """
-    ring, count = _rings(mesh.faces, corners.start, corners.corner)
-    start = np.zeros(len(count) + 1, np.int32)
-    np.cumsum(count, out=start[1:])
-    neighbour, rate, rim = _rates(
+    start, neighbour = neighbours(mesh, corners)
+    rate, rim = _rates(
         mesh.vertices,
         mesh.faces,
         corners.start,
         corners.corner,
-        ring,
         start,
+        neighbour,
         areas,
         _ROW_CAP / typical_area,
     )
@@ -102,31 +101,6 @@ def _relative_to_largest(start: IndexArray, rate: NDArray[np.float32]) -> float:
     return float(largest)
 
 
-@compiled(parallel=True)
-def _rings(
-    faces: IndexArray, start: IndexArray, corner: IndexArray
-) -> tuple[IndexArray, IndexArray]:
-    """Return each vertex's neighbours, once each, from ``ring[2 * start[vertex]]`` on."""
-    vertex_count = len(start) - 1
-    ring = np.empty(2 * len(corner), np.int32)
-    count = np.empty(vertex_count, np.int32)
-    for vertex in prange(vertex_count):
-        base = 2 * start[vertex]
-        found = 0
-        for at in range(start[vertex], start[vertex + 1]):
-            for other in other_two(faces, corner[at]):
-                known = False
-                for slot in range(base, base + found):
-                    if ring[slot] == other:
-                        known = True
-                        break
-                if not known:
-                    ring[base + found] = other
-                    found += 1
-        count[vertex] = found
-    return ring, count
-
-
 @compiled()
 def _cotangent(vertices: FloatArray, apex: int, a: int, b: int) -> float:
     ux, uy, uz = edge(vertices, apex, a)
@@ -141,30 +115,25 @@ def _rates(
     faces: IndexArray,
     corner_start: IndexArray,
     corner: IndexArray,
-    ring: IndexArray,
     start: IndexArray,
+    neighbour: IndexArray,
     areas: FloatArray,
     cap: float,
-) -> tuple[IndexArray, NDArray[np.float32], BoolArray]:
+) -> tuple[NDArray[np.float32], BoolArray]:
     on_rim = np.empty(len(vertices), np.bool_)
-    neighbour = np.empty(start[-1], np.int32)
     rate = np.empty(start[-1], np.float32)
     for vertex in prange(len(vertices)):
         first, last = start[vertex], start[vertex + 1]
         weight = np.zeros(last - first)
         faces_at = np.zeros(last - first, np.int32)
-        shift = 2 * corner_start[vertex] - first
-        for slot in range(first, last):
-            neighbour[slot] = ring[slot + shift]
         for at in range(corner_start[vertex], corner_start[vertex + 1]):
             after, before = other_two(faces, corner[at])
-            for slot in range(first, last):
-                if neighbour[slot] == after:
-                    weight[slot - first] += 0.5 * _cotangent(vertices, before, vertex, after)
-                    faces_at[slot - first] += 1
-                elif neighbour[slot] == before:
-                    weight[slot - first] += 0.5 * _cotangent(vertices, after, before, vertex)
-                    faces_at[slot - first] += 1
+            slot = slot_of(neighbour, first, last, after) - first
+            weight[slot] += 0.5 * _cotangent(vertices, before, vertex, after)
+            faces_at[slot] += 1
+            slot = slot_of(neighbour, first, last, before) - first
+            weight[slot] += 0.5 * _cotangent(vertices, after, before, vertex)
+            faces_at[slot] += 1
         rim = 0
         for j in range(last - first):
             rim += faces_at[j] == 1
@@ -188,4 +157,4 @@ def _rates(
         mass = max(mass, total / cap)
         for j in range(last - first):
             rate[first + j] = weight[j] / (mass * cap)
-    return neighbour, rate, on_rim
+    return rate, on_rim

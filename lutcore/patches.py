@@ -49,7 +49,8 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
         operator.rim[order] | (np.diff(start) < np.diff(operator.start)[order]),
     )
     # A patch that is a whole island, cut where another began, may leave stars that tell nothing.
-    return Surface(on.fields[order], links, on.spacing), inner & (np.diff(start) >= _LEAST_STAR)
+    fields = on.points[order], on.fields[order], on.areas[order]
+    return Surface(*fields, links, on.spacing), inner & (np.diff(start) >= _LEAST_STAR)
 
 
 @compiled()

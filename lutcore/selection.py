@@ -5,7 +5,7 @@ from numba import prange
 from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
-from lutcore.bands import INTERIOR, bands
+from lutcore.bands import INTERIOR, Bands, bands
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
@@ -13,6 +13,8 @@ from lutcore.curvature import PrincipalCurvatures
 from lutcore.lowpass import SingleArray
 from lutcore.progress import Progress, silent, tell
 from lutcore.refinement import refined
+from lutcore.rims import jet_radius, jets_at
+from lutcore.specks import doubt, specks
 from lutcore.tensors import write_principal
 
 # A star that smoothing has closed to less than this share of its extent tells nothing more.
@@ -20,14 +22,14 @@ _CLOSED = 0.05
 # Bias at a scale, over the change to the next, squared: 1/(g - 1)^2 where that change itself grows
 # by g from band to band. A filter of fourth order has g = 4 on wide features; near the scale it
 # is less, which the bands tell. Never less than the first of these, nor g - 1 than the second.
-_BIAS, _SLOWEST = 0.2, 0.7
+_BIAS, _SLOWEST = 0.1, 0.65
 # The unsmoothed star has no finer scale to compare with: nearly all the change is its error.
-_RAW = 1.1
+_RAW = 1.5
 # A neighbourhood's own noise counts as much as that of its class, up to this many times it.
-_OWN, _LOUDEST = 1.0, 4.0
+_OWN, _LOUDEST = 1.5, 3.3
 # Nothing is known to be smooth over more than its radius of curvature: relative bias that is
 # assumed at (scale k)^4 = 1, with k at half the scale.
-_ROUND = 0.3
+_ROUND = 0.15
 # Of scales that are as good, or all good enough, the finer one: each costs as much as if its
 # squared error were larger by this.
 _DEARER = 1.3
@@ -35,11 +37,15 @@ _DEARER = 1.3
 _SHARPNESS = 4
 # Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
 # vertices of noisy surfaces; near rims neighbours err alike and more.
-_CALIBRATION, _CALIBRATION_AT_RIM = 0.65, 1.5
+_CALIBRATION, _CALIBRATION_AT_RIM = 0.72, 1.5
 # Classes of vertices near a rim, which take over what inner vertices know better.
 _RIM = 3
-# A polyhedron is off by this times k^3 spacing^2 at any scale, as on a clean regular torus.
-_FACETS = 0.2
+# A one-sided cubic multiplies noise: worth trying only where that of unsmoothed stars is below
+# this share of the typical curvature.
+_QUIET = 0.15
+# A polyhedron is off by this times k^3 spacing^2 at any scale, as on a clean regular torus; by the
+# second of these where its stars are lopsided, as at the ends of a clean cylinder.
+_FACETS, _FACETS_AT_RIM = 0.2, 1.0
 
 
 def tilt_correction(on: Surface, smoothed: Smoothed) -> float:
@@ -98,16 +104,30 @@ def select(
         One value for each vertex, with the scale that was used there.
     """
     tell(progress, 0.0, "telling noise from bias")
-    tensors, square, used, place = _chosen(on, smoothed, lengths, precision, steadiness)
+    tensors, square, used, found = _chosen(on, smoothed, lengths, precision, steadiness)
+    typical = _typical_square(smoothed)
+    rim = found.place <= _RIM
+    jets = np.empty(0, np.int32)
+    if lengths is None:
+        near = np.flatnonzero(rim).astype(np.int32)
+        quiet = float(found.left[INTERIOR, 0]) < _QUIET**2 * typical
+        if quiet and len(near):
+            jets = jets_at(on, smoothed.normals, near, tensors, square)
+            used[jets] = 0.0  # as precise as unsmoothed stars, and to be left as they are
+    weak = np.flatnonzero((used < 0.0) | rim).astype(np.int32)
     links = (on.operator.start, on.operator.neighbour)
-    weak = np.flatnonzero((used < 0.0) | (place <= _RIM)).astype(np.int32)
     borrow(*links, smoothed.normals, weak, used[weak] < 0.0, tensors, square)
     np.maximum(used, 0.0, out=used)
+    few = specks(*links, np.flatnonzero(on.operator.rim).astype(np.int32))
+    if len(few) < len(used):
+        doubt(few, typical, tensors, square)
     tell(progress, 0.6, "joining scales")
     refined(on, smoothed.normals, used, tensors, square)
+    used[jets] = jet_radius(on)
     tell(progress, 0.9, "principal directions")
+    facets = np.where(rim, _FACETS_AT_RIM, _FACETS)
     k, directions, error = _principal(
-        smoothed.normals, tensors, square, tilt_correction(on, smoothed), _FACETS * on.spacing**2
+        smoothed.normals, tensors, square, tilt_correction(on, smoothed), facets * on.spacing**2
     )
     return PrincipalCurvatures(
         k[0], k[1], directions[0], directions[1], smoothed.normals, error, used
@@ -138,8 +158,8 @@ def _chosen(
     lengths: FloatArray | float | None,
     precision: float,
     steadiness: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int8]]:
-    """Return tensors, squared errors and scales as `_mix` does, and the vertices' classes."""
+) -> tuple[FloatArray, FloatArray, FloatArray, Bands]:
+    """Return tensors, squared errors and scales as `_mix` does, and what they were judged by."""
     found = bands(on, smoothed)
     wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
     if lengths is not None:
@@ -154,7 +174,7 @@ def _chosen(
         steadiness,
         1.0 / on.spacing,
     )
-    return *mixed, found.place
+    return *mixed, found
 
 
 def _typical_square(smoothed: Smoothed) -> float:
@@ -169,6 +189,7 @@ def _mix(
     tensors: SingleArray,
     stretch: SingleArray,
     energy: SingleArray,
+    room: SingleArray,
     place: NDArray[np.int8],
     noise: FloatArray,
     left: FloatArray,
@@ -184,7 +205,10 @@ def _mix(
     square = np.empty(vertices)
     used = np.empty(vertices)
     for i in prange(vertices):
-        typical, rest = noise[place[i]], left[place[i]]
+        typical, rest = noise[place[i]].copy(), left[place[i]].copy()
+        for j in range(1, count):
+            typical[j] *= room[i]
+            rest[j] *= room[i]
         calibration = _CALIBRATION if place[i] == INTERIOR else _CALIBRATION_AT_RIM
         errors = np.empty(count)
         costs = np.empty(count)
@@ -267,7 +291,7 @@ def _share_of(scales: FloatArray, j: int, length: float) -> float:
 
 @compiled(parallel=True)
 def _principal(
-    normals: FloatArray, tensors: FloatArray, square: FloatArray, factor: float, facets: float
+    normals: FloatArray, tensors: FloatArray, square: FloatArray, factor: float, facets: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     k = np.empty((2, len(normals)))
     directions = np.empty((2, len(normals), 3))
@@ -277,5 +301,5 @@ def _principal(
         tensor = (factor * tensors[i, 0], factor * tensors[i, 1], factor * tensors[i, 2])
         write_principal(i, n, tensor, k, directions)
         size = 0.5 * (k[0, i] * k[0, i] + k[1, i] * k[1, i])
-        error[i] = np.sqrt(factor * factor * square[i] + facets * facets * size**3)
+        error[i] = np.sqrt(factor * factor * square[i] + facets[i] ** 2 * size**3)
     return k, directions, error

@@ -7,14 +7,15 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.balls import BLOCK, gather_ball
 from lutcore.compiled import compiled
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.estimation import EstimatorParameters, estimator_registry
 from lutcore.geometry import area_normals, edge, typical_spacing, vertex_corners
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, tell
+from lutcore.rings import neighbours
 from lutcore.tensors import Vector, tangent_frame, write_principal
-from plugins.curvature._balls import BLOCK, fixed_faces, gather_ball
 from plugins.curvature._completed import spread
 
 _DEFAULT_SPACINGS = 3.0
@@ -44,7 +45,10 @@ class CorrectedCurvature(EstimatorParameters):
         spacing = typical_spacing(mesh)
         radius = _DEFAULT_SPACINGS * spacing if scale is None else scale
         corners = vertex_corners(mesh)
-        faces = fixed_faces(mesh)
+        # Compiled for one kind of array only: faces of one mesh may be writable, of another not.
+        faces = mesh.faces.view()
+        faces.setflags(write=False)
+        links = neighbours(mesh, corners)
         along = area_normals(mesh, corners)
         measures = _measures(mesh.vertices, faces, along)
         count = len(mesh.vertices)
@@ -64,6 +68,7 @@ class CorrectedCurvature(EstimatorParameters):
                 faces,
                 corners.start,
                 corners.corner,
+                *links,
                 along,
                 measures,
                 seen,
@@ -127,6 +132,8 @@ def _add(
     faces: IndexArray,
     start: IndexArray,
     corner: IndexArray,
+    link: IndexArray,
+    neighbour: IndexArray,
     along: FloatArray,
     measures: FloatArray,
     seen: IndexArray,
@@ -143,7 +150,7 @@ def _add(
         for i in range(
             first + (last - first) * chunk // chunks, first + (last - first) * (chunk + 1) // chunks
         ):
-            count = gather_ball(i, radius, 1, vertices, faces, start, corner, seen[chunk], mine)
+            count = gather_ball(i, radius, 1, vertices, link, neighbour, seen[chunk], mine)
             total = np.zeros(_MEASURES)
             size = 0.0
             for at in range(count):

@@ -9,7 +9,7 @@ from tests.bench import bandwidth, error_bars, growth, steadiness
 
 
 def test_the_bars_of_a_smooth_torus_are_judged_by_surface_and_noise():
-    interior, border, lost = error_bars.measured(("torus",), 0.05, 0)
+    interior, border, lost = error_bars.measured(error_bars.TUNED, ("torus",), 0.05)
     assert len(interior) == 2 * len(error_bars.NOISES)
     assert not border
     assert lost == 0

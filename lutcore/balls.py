@@ -4,32 +4,9 @@ import numpy as np
 
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
-from lutcore.geometry import other_two
-from lutcore.mesh import TriangleMesh
 
-# Vertices between two looks at the caller's wish to stop.
 BLOCK = 1 << 16
-
-
-def fixed_faces(mesh: TriangleMesh) -> IndexArray:
-    """Return the faces as an array that cannot be written.
-
-    Compiled loops are made for one kind of array: writable faces of one mesh and fixed ones of
-    another would compile them twice.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        The surface.
-
-    Returns
-    -------
-    ndarray of int32, shape=(m, 3)
-        A view of its faces.
-    """
-    faces = mesh.faces.view()
-    faces.setflags(write=False)
-    return faces
+"""Vertices between two looks at the caller's wish to stop."""
 
 
 @compiled()
@@ -38,9 +15,8 @@ def gather_ball(
     radius: float,
     least: int,
     vertices: FloatArray,
-    faces: IndexArray,
     start: IndexArray,
-    corner: IndexArray,
+    neighbour: IndexArray,
     seen: IndexArray,
     ball: IndexArray,
 ) -> int:
@@ -54,10 +30,10 @@ def gather_ball(
         Radius, mesh units.
     least : int
         Number of vertices that whole rings are added for, even from outside the ball.
-    vertices, faces : ndarray
-        The mesh.
-    start, corner : ndarray of int32
-        Its corners by vertex.
+    vertices : ndarray, shape=(n, 3)
+        Positions.
+    start, neighbour : ndarray of int32
+        The neighbours of each vertex.
     seen : ndarray of int32, shape=(n,)
         Scratch; each centre marks with its own number + 1, so it is cleared once for all.
     ball : ndarray of int32, shape=(n,)
@@ -74,18 +50,17 @@ def gather_ball(
     count, at, ring, hungry = 1, 0, 1, least > 1
     x, y, z = vertices[centre, 0], vertices[centre, 1], vertices[centre, 2]
     while at < count:
-        if at == ring:  # a whole ring or none of it: the order of the faces must not matter
+        if at == ring:  # a whole ring or none of it: the order of neighbours must not matter
             ring, hungry = count, count < least
         member = ball[at]
         at += 1
         for slot in range(start[member], start[member + 1]):
-            after, before = other_two(faces, corner[slot])
-            for other in (after, before):
-                if seen[other] == mark:
-                    continue
-                dx, dy, dz = vertices[other, 0] - x, vertices[other, 1] - y, vertices[other, 2] - z
-                if hungry or dx * dx + dy * dy + dz * dz <= radius * radius:
-                    seen[other] = mark
-                    ball[count] = other
-                    count += 1
+            other = neighbour[slot]
+            if seen[other] == mark:
+                continue
+            dx, dy, dz = vertices[other, 0] - x, vertices[other, 1] - y, vertices[other, 2] - z
+            if hungry or dx * dx + dy * dy + dz * dz <= radius * radius:
+                seen[other] = mark
+                ball[count] = other
+                count += 1
     return count

@@ -1,0 +1,80 @@
+"""Open islands of a few vertices: specks of a scan, whose curvature nothing can vouch for."""
+
+import numpy as np
+
+from lutcore.arrays import FloatArray, IndexArray
+from lutcore.compiled import compiled
+
+# An open island of fewer vertices is a speck: about as many as a one-sided cubic takes.
+_FEW = 24
+
+
+@compiled()
+def specks(start: IndexArray, neighbour: IndexArray, rim: IndexArray) -> IndexArray:
+    """Return the vertices of all specks.
+
+    Parameters
+    ----------
+    start, neighbour : ndarray of int32
+        Neighbours of each vertex.
+    rim : ndarray of int32
+        The vertices on or near a rim; every open island has some.
+
+    Returns
+    -------
+    ndarray of int32
+        Each once.
+    """
+    done = np.zeros(len(start) - 1, np.bool_)
+    found = np.empty(len(start) - 1, np.int32)
+    count = 0
+    for seed in rim:
+        if done[seed]:
+            continue
+        # Grown in place behind those found; forgotten again if it grows too large.
+        last = count + 1
+        found[count] = seed
+        done[seed] = True
+        at = count
+        while at < last and last - count < _FEW:
+            for slot in range(start[found[at]], start[found[at] + 1]):
+                other = neighbour[slot]
+                if not done[other] and last - count < _FEW:
+                    done[other] = True
+                    found[last] = other
+                    last += 1
+            at += 1
+        if last - count < _FEW:
+            count = last
+        else:
+            for at in range(count + 1, last):
+                done[found[at]] = False
+    return found[:count]
+
+
+@compiled()
+def doubt(speck: IndexArray, typical: float, tensors: FloatArray, square: FloatArray) -> None:
+    """Take the curvature of specks for no more than they can vouch for, in place.
+
+    A value read off so few vertices is no more certain than it is large. Between it and the rest of
+    the mesh, whose curvature is of some typical size, the best guess weighs both by their squared
+    uncertainties.
+
+    Parameters
+    ----------
+    speck : ndarray of int32
+        Their vertices.
+    typical : float
+        Typical square of the curvature elsewhere, 1/mesh unit squared.
+    tensors : ndarray, shape=(n, 3)
+        Entries xx, xy, yy; rewritten.
+    square : ndarray, shape=(n,)
+        Squared error bars; rewritten.
+    """
+    for i in speck:
+        xx, xy, yy = tensors[i, 0], tensors[i, 1], tensors[i, 2]
+        uncertain = square[i] + 0.5 * (xx * xx + yy * yy) + xy * xy
+        share = typical / (typical + uncertain)
+        for entry in range(3):
+            tensors[i, entry] *= share
+        square[i] = share * uncertain
