@@ -8,18 +8,22 @@ from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 
+from app.cli.console import clear_line, note
+from lutcore.compiling import when_compiling
 from lutcore.errors import CancelledError, CurvelightError, MeshError, ParameterError
 
+_COMPILING = "compiling for this machine, once; that can take a minute"
 # Name: what it does. The command's module is imported only when it is used.
 COMMANDS = {
     "figure": "the paper's Figure 1: shading left, curvature right",
     "curvature": "measure curvature: a picture, or data",
     "shade": "shade as a translucent material: a picture, or data",
     "compare": "shading models side by side",
+    "choose": "which shading model is enough for a scene, and why",
     "stability": "which estimators survive broken meshes, and by how much",
     "chart": "speed against accuracy, and one recommendation",
     "lut": "a material's tables as npz, EXR or PNG",
-    "models": "list shading models, curvature estimators and their parameters",
+    "models": "list shading models, diffusion profiles, curvature estimators and their parameters",
     "materials": "list materials",
     "samples": "list sample meshes",
     "doctor": "say whether this machine can draw, and what is missing",
@@ -94,8 +98,6 @@ def exit_code(error: CurvelightError) -> int:
 
 
 def _fail(message: str, code: int, verbose: bool) -> int:
-    from app.cli.console import clear_line
-
     clear_line()
     if verbose:
         traceback.print_exc()
@@ -129,7 +131,9 @@ def _command(module: ModuleType, parser: argparse.ArgumentParser, words: list[st
     module.add_arguments(parser, words)
     parser.add_argument("--verbose", action="store_true", help="show tracebacks")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
-    code: int = module.run(parser.parse_args(words))
+    arguments = parser.parse_args(words)
+    when_compiling(lambda: note(arguments, _COMPILING))
+    code: int = module.run(arguments)
     return code
 
 

@@ -60,3 +60,23 @@ def test_a_full_disk_keeps_no_code_and_hinders_no_result(tmp_path):
         check=False,
     )
     assert done.stdout.strip() == "True", done.stderr
+
+
+def test_the_user_is_told_once_when_something_has_to_be_compiled(tmp_path):
+    code = (
+        "import lutcore.color, numpy;"
+        "from lutcore.compiling import when_compiling;"
+        "when_compiling(lambda: print('compiling'));"
+        "[lutcore.color.srgb_encode(numpy.ones(shape)) for shape in (1, (1, 3))]"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for _ in range(2)
+    ]
+    assert said == [["compiling"], []]
