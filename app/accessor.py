@@ -10,6 +10,7 @@ from app import export
 from app.session import FIGURE_LIGHTS
 from lutcore.arrays import FloatArray, finite
 from lutcore.color import auto_exposure
+from lutcore.diffusion import DiffusionProfile
 from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight, Light
 from lutcore.materials import Material
@@ -78,6 +79,7 @@ class CurvelightAccessor:
         model: str = "curvature-lut",
         mm_per_unit: float = 1.0,
         *,
+        profile: DiffusionProfile | str = "jensen2001",
         method: str = "auto",
         scale: float | None = None,
         exposure: float | None = None,
@@ -93,14 +95,17 @@ class CurvelightAccessor:
             Those of the paper's Figure 1 if not given: strong from the right (+x), weak from the
             left, for a mesh that faces +z.
         model : str
-            A shading model; see `lutcore.shading_models`.
+            A shading model, see `lutcore.shading_models`, or ``auto`` for the cheapest that
+            suffices.
         mm_per_unit : float
             Size of a mesh unit, mm.
+        profile : DiffusionProfile or str
+            How light spreads in the material, or its name; see `lutcore.diffusion_profiles`.
         method : str
             A curvature estimator.
         scale : float, optional
-            Length that curvature is averaged over, mesh units; if not given, `auto` takes the
-            larger of the material's glow and three spacings of the mesh.
+            Length that curvature is averaged over, mesh units, for all channels; if not given,
+            `auto` gives each channel the detail that its light sees (`lutcore.detail_seen`).
         exposure : float, optional
             Factor before encoding; brings the brightest parts near white if not given.
         **parameters : object
@@ -119,20 +124,36 @@ class CurvelightAccessor:
         lutcore.ParameterError
             If a name or a value is not accepted.
         """
+        from app.costs import measured
         from lutcore.baking import bake
+        from lutcore.detail import detail_seen
         from lutcore.estimation import principal_curvatures
         from lutcore.scale import shading_scale
-        from lutcore.shading import shade
+        from lutcore.shading import AUTO, shade
 
         mesh = self._mesh()
         per_unit = float(finite("mm_per_unit", mm_per_unit, ()))
         if per_unit <= 0.0:
             raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
+        detail = None
         if scale is None and method == "auto":
-            scale = shading_scale(mesh, bake(material).glow / per_unit)
+            scale = shading_scale(mesh, bake(material, profile=profile).glow / per_unit)
+            detail = detail_seen(mesh, material, per_unit, profile=profile)
         curvatures = principal_curvatures(mesh, method, scale)
         chosen = _default_lights() if lights is None else lights
-        exitance = shade(mesh, curvatures, material, chosen, model, mm_per_unit, **parameters)
+        if model == AUTO:
+            measured()
+        exitance = shade(
+            mesh,
+            curvatures,
+            material,
+            chosen,
+            model,
+            mm_per_unit,
+            profile=profile,
+            detail=detail,
+            **parameters,
+        )
         factor = auto_exposure(exitance) if exposure is None else exposure
         return self._with(export.shading_arrays(exitance, factor))
 

@@ -1,5 +1,6 @@
 """From a session to its picture: which surfaces, from where, in which colours."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,15 +42,16 @@ class Picture:
         The exposure, where something was shaded.
     ranges : dict of str to tuple of 2 floats
         Ends of the colour bars by quantity, ``ciede2000`` for a difference.
-    difference : dict of str to float or None
-        Mean, 99th percentile and maximum of CIEDE2000 over the vertices, where it was asked for.
+    difference : dict of str to dict, or None
+        By model the mean, 99th percentile and maximum over the vertices of CIEDE2000 against the
+        first one, where it was asked for.
     """
 
     image: Image
     camera: Camera
     exposure: float | None
     ranges: dict[str, tuple[float, float]]
-    difference: dict[str, float] | None
+    difference: dict[str, dict[str, float]] | None
 
     @property
     def range(self) -> tuple[float, float] | None:
@@ -90,7 +92,16 @@ def _grid(session: Session) -> tuple[int, int]:
         if session.quantity == "all":
             raise ParameterError("a figure shows one quantity; choose one instead of all")
         return 2, 1
-    return (len(session.compared) + session.difference if session.view == "compare" else 1), 1
+    if session.view != "compare":
+        return 1, 1
+    if _below(session):
+        return len(session.compared), 2
+    return len(session.compared) + session.difference, 1
+
+
+def _below(session: Session) -> bool:
+    """Tell whether differences lie below the models: where there are several."""
+    return session.view == "compare" and session.difference and len(session.compared) > 2
 
 
 class _Studio:
@@ -100,7 +111,9 @@ class _Studio:
         self.session = session
         self.pipeline = pipeline
         self.subject: Subject = pipeline.subject(session)
+        self.below = _below(session)
         self.has_bar = session.view in ("curvature", "figure") or session.difference
+        self.has_bar = self.has_bar and not self.below
         self.columns, self.rows = _grid(session)
         share = _BAR_PIXELS_PER_HEIGHT if self.rows == 1 else _GRID_BAR
         bar = max(share * session.size[1] / self.rows, _LEAST_BAR)
@@ -119,7 +132,7 @@ class _Studio:
         self.axes = cameras.axes(self.camera)
         self.exposure: float | None = session.exposure
         self.ranges: dict[str, tuple[float, float]] = {}
-        self.difference: dict[str, float] | None = None
+        self.difference: dict[str, dict[str, float]] | None = None
 
     def picture(self) -> Picture:
         """Draw."""
@@ -193,26 +206,36 @@ class _Studio:
         linear = [self._linear(model) for model in self.session.compared]
         shown = [self._display(light) for light in linear]
         panels = [
-            Panel(self._surface(rgb=rgb, caption=model.name), self.width, self.camera)
+            Panel(self._surface(rgb=rgb, caption=model.label), self.width, self.camera)
             for rgb, model in zip(shown, self.session.compared, strict=True)
         ]
-        return panels + (self._difference(shown[0], shown[1]) if self.session.difference else [])
+        return panels + (self._differences(shown) if self.session.difference else [])
 
-    def _difference(self, one: NDArray[np.uint8], other: NDArray[np.uint8]) -> list[Panel]:
+    def _differences(self, shown: Sequence[NDArray[np.uint8]]) -> list[Panel]:
+        """Draw how far models are from the first: one beside them, several below."""
         from lutcore.metrics import ciede2000
 
-        values = ciede2000(one, other)
+        first, *others = self.session.compared
+        values = [ciede2000(shown[0], other) for other in shown[1 : None if self.below else 2]]
         self.difference = {
-            "mean": float(values.mean()),
-            "p99": float(np.percentile(values, 99.0)),
-            "max": float(values.max()),
+            model.label: {
+                "mean": float(one.mean()),
+                "p99": float(np.percentile(one, 99.0)),
+                "max": float(one.max()),
+            }
+            for one, model in zip(values, others, strict=False)
         }
-        ends = self.session.range or (0.0, max(1.0, self.difference["p99"]))
+        most = max(one["p99"] for one in self.difference.values())
+        ends = self.session.range or (0.0, max(1.0, most))
         self.ranges["ciede2000"] = ends
         scale = ColorScale(table(self.session.colormap or "magma"), *ends, "CIEDE2000")
-        first, second = (model.name for model in self.session.compared[:2])
-        surface = self._surface(values=values, scale=scale, caption=f"{second} against {first}")
-        return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]
+        maps = [
+            self._surface(values=one, scale=scale, caption=f"{model.name} against {first.name}")
+            for one, model in zip(values, others, strict=False)
+        ]
+        panels = [Panel(surface, self.width, self.camera) for surface in maps]
+        bar = Panel(scale, self.width if self.below else self.bar_share)
+        return [bar, *panels] if self.below else [*panels, bar]
 
     def _surface(
         self,

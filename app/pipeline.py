@@ -1,7 +1,7 @@
 """From a session to per-vertex arrays, each computed once and kept."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
@@ -22,6 +22,10 @@ from lutcore.progress import Progress, silent
 
 if TYPE_CHECKING:
     from app.consultation import Consultation
+    from lutcore.detail import Detail
+    from lutcore.diffusion import DiffusionProfile
+    from lutcore.lut import PsiTable
+    from lutcore.shading import ShadingInputs
 
 T = TypeVar("T")
 _KEPT = 8
@@ -219,16 +223,14 @@ class Pipeline:
         Parameters
         ----------
         session : Session
-            Its material and scale are used.
+            Its material, profile and size of a mesh unit are used.
 
         Returns
         -------
         float
             Largest l_u psi(0), mesh units.
         """
-        from lutcore.baking import bake
-
-        return bake(self.material(session)).glow / self.mm_per_unit(session)
+        return self._table(session).glow / self.mm_per_unit(session)
 
     def floored(self, session: Session) -> bool:
         """Tell whether the material absorbs too little for a glow that ends.
@@ -236,16 +238,41 @@ class Pipeline:
         Parameters
         ----------
         session : Session
-            Its material is used.
+            Its material and profile are used.
 
         Returns
         -------
         bool
             True if some channel is shaded with the least absorption instead of its own.
         """
+        return bool(self._table(session).floored.any())
+
+    def _table(self, session: Session) -> "PsiTable":
         from lutcore.baking import bake
 
-        return bool(bake(self.material(session)).floored.any())
+        return bake(self.material(session), profile=self.profile(session))
+
+    def profile(self, session: Session) -> "DiffusionProfile":
+        """Return the session's diffusion profile.
+
+        Parameters
+        ----------
+        session : Session
+            Its `profile` is used.
+
+        Returns
+        -------
+        DiffusionProfile
+            How light spreads under a flat surface.
+
+        Raises
+        ------
+        ParameterError
+            If a name does not exist, or a parameter is out of range.
+        """
+        from lutcore.diffusion import diffusion_profile
+
+        return diffusion_profile(session.profile.name, **session.profile.parameters)
 
     def material(self, session: Session) -> Material:
         """Return the session's material.
@@ -288,28 +315,133 @@ class Pipeline:
             Linear RGB; see `lutcore.shade`.
         """
         from lutcore.lights import pack
-        from lutcore.shading import shade
 
-        curvatures = self.curvatures(session)
-        subject = self.subject(session)
         lights = world_lights(session, axes)
         key = (
             "exitance",
             *self._curvature_key(session),
-            _key((session.material, model, self.mm_per_unit(session))),
+            # A scale that is given is one for all channels, one that is found is not.
+            session.scale is None,
+            _key((session.material, session.profile, model, self.mm_per_unit(session))),
+            session.shadows,
             pack(lights).tobytes(),
         )
+        return self._once(key, lambda: self._shade(session, model, axes))
+
+    def _shade(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
+        from dataclasses import replace
+
+        from lutcore.parameters import create
+        from lutcore.shading import AUTO, exitance, model_registry
+
+        if model.name == AUTO:
+            from app.costs import measured
+
+            measured(self.progress)  # once on this machine, not in each process
+        inputs = self.inputs(session, axes)
+        plugin = model_registry.get(model.name)
+        chosen = create(plugin, f"shading model {model.name!r}", dict(model.parameters))
+        settled = chosen.settled(inputs)
+        shares = self.visibility(session, settled.local, world_lights(session, axes))
+        return exitance(settled, replace(inputs, visibility=shares))
+
+    def inputs(self, session: Session, axes: FloatArray) -> "ShadingInputs":
+        """Return what shading models get, without cast shadows.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its model and shadows is used.
+        axes : ndarray, shape=(3, 3)
+            The camera's axes, for lights that move with it.
+
+        Returns
+        -------
+        ShadingInputs
+            See `lutcore.shading`.
+        """
+        from lutcore.shading import shading_inputs
+
+        return shading_inputs(
+            self.subject(session).mesh,
+            self.curvatures(session),
+            self.material(session),
+            world_lights(session, axes),
+            self.mm_per_unit(session),
+            profile=self.profile(session),
+            progress=self.progress,
+            detail=self.detail(session),
+        )
+
+    def detail(self, session: Session) -> "Detail | None":
+        """Return the surface as the light of each channel sees it.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, size of a mesh unit, material, profile, estimator and scale are used.
+
+        Returns
+        -------
+        Detail or None
+            None where the session names an estimator or a scale: then that is what all channels
+            see.
+        """
+        if session.scale is not None or session.estimator.name != "auto":
+            return None
+        from lutcore.detail import detail_seen
+
+        subject, size = self.subject(session), self.mm_per_unit(session)
+        key = ("detail", subject.loaded.digest, _key((session.material, session.profile, size)))
         return self._once(
             key,
-            lambda: shade(
+            lambda: detail_seen(
                 subject.mesh,
-                curvatures,
                 self.material(session),
-                lights,
-                model=model.name,
-                mm_per_unit=self.mm_per_unit(session),
-                **model.parameters,
+                size,
+                profile=self.profile(session),
+                progress=self.progress,
             ),
+        )
+
+    def visibility(
+        self, session: Session, local: bool, lights: Sequence[Light]
+    ) -> FloatArray | None:
+        """Return which lights reach which vertices, as a model needs it.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, `shadows`, material, profile and, for `auto`, its curvature are used.
+        local : bool
+            Whether for a local model, which gets shadows that are softened as light spreads.
+        lights : sequence of DirectionalLight, PointLight or ConeLight
+            The lights, in world axes.
+
+        Returns
+        -------
+        ndarray, shape=(l, n) or (l, n, 3), or None
+            Shares from 0 to 1; None where the session casts no shadows.
+        """
+        if session.shadows == "off" or not lights:
+            return None
+        from lutcore.lights import pack
+        from lutcore.visibility import forecast, softened, visibility
+
+        subject = self.subject(session)
+        packed = pack(lights)
+        if session.shadows == "auto":
+            normals = self.curvatures(session).normals
+            if not forecast(subject.mesh, normals, packed).needed:
+                return None
+        key = ("visibility", subject.loaded.digest, packed.tobytes())
+        seen = self._once(key, lambda: visibility(subject.mesh, packed, self.progress))
+        if not local:
+            return seen
+        table, size = self._table(session), self.mm_per_unit(session)
+        glow = table.mean_free_path * table.psi[:, 0] / size
+        return self._once(
+            (*key, glow.tobytes()), lambda: softened(seen, subject.mesh, glow, self.progress)
         )
 
     def _curvature_key(self, session: Session) -> tuple[Hashable, ...]:

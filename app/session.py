@@ -104,6 +104,7 @@ class Camera(_Part, frozen=True):
 
 
 View = Literal["shade", "curvature", "figure", "compare"]
+Shadows = Literal["off", "on", "auto"]
 Quantity = Literal[
     "curvedness",
     "k1",
@@ -129,6 +130,8 @@ class Session(_Part, frozen=True):
 
     `mesh` is a path or ``sample:NAME``; `mm_per_unit` None takes the sample's own scale, else
     1 mm; `scale` is the length in mesh units that curvature is averaged over, None chooses it;
+    `profile` is how light spreads in the material, the same for all models that are compared;
+    `shadows` says whether the surface casts shadows on itself, ``auto`` where they change much;
     `peers` are the estimators whose disagreement is measured; `quantity` ``all`` draws each in a
     panel of its own;
     `camera` is a view name (see `app.camera`) or a camera; `range` None takes a robust one (see
@@ -142,6 +145,8 @@ class Session(_Part, frozen=True):
     view: View = "shade"
     material: str | Substance = "skin1"
     lights: tuple[Directional | Point | Cone, ...] = FIGURE_LIGHTS
+    profile: Method = Method("jensen2001")
+    shadows: Shadows = "off"
     model: Method = Method("curvature-lut")
     compared: tuple[Method, ...] = ()
     difference: bool = False

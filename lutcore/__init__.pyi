@@ -1,5 +1,8 @@
 from .baking import bake as bake
 from .curvature import PrincipalCurvatures as PrincipalCurvatures
+from .detail import detail_seen as detail_seen
+from .diffusion import diffusion_profile as diffusion_profile
+from .diffusion import diffusion_profiles as diffusion_profiles
 from .errors import CancelledError as CancelledError
 from .errors import CurvelightError as CurvelightError
 from .errors import MeshError as MeshError

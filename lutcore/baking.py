@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from lutcore.diffusion import DiffusionProfile, Optics, optics, profile_registry
+from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
 from lutcore.lut import PsiTable
 from lutcore.materials import Material
 from lutcore.materials import material as built_in
-from lutcore.parameters import create
 from lutcore.plane import PlaneTable, tabulate
 
 BETA_FLOOR = 0.0037
@@ -27,7 +26,10 @@ _SAMPLES = (8, 8192)
 
 
 def bake(
-    material: Material | str, samples: int = 64, profile: str = "jensen2001", **parameters: Any
+    material: Material | str,
+    samples: int | None = None,
+    profile: DiffusionProfile | str = "jensen2001",
+    **parameters: Any,
 ) -> PsiTable:
     """Return the psi table of a material; the same object for the same arguments.
 
@@ -35,12 +37,13 @@ def bake(
     ----------
     material : Material or str
         A material, or the name of a built-in one.
-    samples : int
-        Knots, 8 to 8192. With 64 psi is within 1e-6 of the integral, with 128 within 1e-7.
-    profile : str
-        Name of the diffusion profile.
+    samples : int, optional
+        Knots, 8 to 8192; if not given, as many as bring psi within 1e-6 of the integral: 64 for
+        the dipole, which is within 1e-7 with 128.
+    profile : DiffusionProfile or str
+        A diffusion profile, or the name of one.
     **parameters : object
-        The profile's parameters.
+        The parameters of a profile that is named.
 
     Returns
     -------
@@ -53,15 +56,16 @@ def bake(
     ParameterError
         If a name is unknown or a value out of range.
     """
-    chosen = create(profile_registry.get(profile), f"diffusion profile {profile!r}", parameters)
-    return _bake(resolved(material), whole("samples", samples, *_SAMPLES), chosen)
+    chosen = diffusion_profile(profile, **parameters)
+    count = chosen.knots if samples is None else whole("samples", samples, *_SAMPLES)
+    return _bake(resolved(material), count, chosen)
 
 
 def bake_plane(
     material: Material | str,
     size: int = 512,
     limit: float = 1.0,
-    profile: str = "jensen2001",
+    profile: DiffusionProfile | str = "jensen2001",
     **parameters: Any,
 ) -> PlaneTable:
     """Return the paper's own two-dimensional table over (a, b), section 3, for use as a texture.
@@ -74,10 +78,10 @@ def bake_plane(
         Samples along a and along b, 8 to 8192.
     limit : float
         Largest b, .01 to 10; 1 is a radius of curvature of l_u.
-    profile : str
-        Name of the diffusion profile.
+    profile : DiffusionProfile or str
+        A diffusion profile, or the name of one.
     **parameters : object
-        The profile's parameters.
+        The parameters of a profile that is named.
 
     Returns
     -------
@@ -93,8 +97,9 @@ def bake_plane(
     count = whole("size", size, *_SAMPLES)
     if not 0.01 <= limit <= 10.0:
         raise ParameterError.out_of_range("limit", limit, 0.01, 10.0, "l_u")
-    # 256 knots: far below the error of the bilinear samples.
-    return tabulate(bake(material, 256, profile, **parameters), count, float(limit))
+    # Far below the error of the bilinear samples.
+    chosen = diffusion_profile(profile, **parameters)
+    return tabulate(bake(material, 4 * chosen.knots, chosen), count, float(limit))
 
 
 def resolved(material: Material | str) -> Material:
@@ -116,6 +121,24 @@ def resolved(material: Material | str) -> Material:
         If there is none of that name.
     """
     return material if isinstance(material, Material) else built_in(material)
+
+
+def glowing(exact: Optics) -> Optics:
+    """Return the constants that the glow of a channel is computed for.
+
+    Parameters
+    ----------
+    exact : Optics
+        Constants of the channel.
+
+    Returns
+    -------
+    Optics
+        The same, or those of the least absorption that has a glow; see `BETA_FLOOR`.
+    """
+    if exact.beta >= BETA_FLOOR:
+        return exact
+    return replace(exact, albedo=1.0 - BETA_FLOOR**2 / 3.0)
 
 
 def whole(name: str, value: int, low: int, high: int) -> int:
@@ -154,7 +177,7 @@ def _bake(material: Material, samples: int, profile: DiffusionProfile) -> PsiTab
     floored = material.beta < BETA_FLOOR
     for channel, exact in enumerate(optics(material)):
         total[channel] = profile.total(exact)
-        shaped = _floored(exact) if floored[channel] else exact
+        shaped = glowing(exact)
         reach[channel] = np.arcsinh(profile.reach(shaped))
         mean_square[channel] = profile.mean_square(shaped)
         t = np.linspace(0.0, reach[channel], samples)
@@ -169,7 +192,3 @@ def _bake(material: Material, samples: int, profile: DiffusionProfile) -> PsiTab
     for array in table.arrays().values():
         array.setflags(write=False)
     return table
-
-
-def _floored(exact: Optics) -> Optics:
-    return replace(exact, albedo=1.0 - BETA_FLOOR**2 / 3.0)

@@ -125,14 +125,14 @@ def smooth(
     """
     change = low_pass(on.operator, on.fields, scales, part(progress, 0.0, 0.7))
     tell(progress, 0.7, "fitting shape operators")
-    normals, tensors, stretch = _tensors(
+    normals, tensors, stretch = shape_operators(
         on.operator.start, on.operator.neighbour, on.fields, change, base, on.spacing
     )
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
 
 @compiled(parallel=True, packed=True)
-def _tensors(
+def shape_operators(
     start: IndexArray,
     neighbour: IndexArray,
     fields: FloatArray,
@@ -140,6 +140,26 @@ def _tensors(
     base: int,
     spacing: float,
 ) -> tuple[FloatArray, SingleArray, SingleArray]:
+    """Fit the shape operators of all stars, unsmoothed and after each smoothing.
+
+    Parameters
+    ----------
+    start, neighbour : ndarray of int32
+        Neighbours of each vertex.
+    fields : ndarray, shape=(n, 6)
+        `Surface.fields`.
+    change : ndarray of float32, shape=(S, n, 6)
+        How far each smoothing moves them; see `lutcore.lowpass`.
+    base : int
+        Which of them gives the normals.
+    spacing : float
+        `Surface.spacing`.
+
+    Returns
+    -------
+    tuple of ndarray
+        `Smoothed.normals`, and `tensors` and `stretch` of 1 + S smoothings, the first none.
+    """
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit

@@ -87,11 +87,7 @@ def principal_curvatures(
     welded = arranged(weld(mesh))
     if welded.mesh is None:
         return _nothing(len(mesh.vertices))
-    # Estimators see a mesh of about unit size, so that no square leaves the range of numbers; a
-    # power of two changes no bits.
-    points = welded.mesh.vertices  # centred
-    unit = float(2.0 ** np.ceil(np.log2(max(points.max(), -points.min()))))
-    sized = TriangleMesh.trusted(points * (1.0 / unit), welded.mesh.faces)
+    sized, unit = sized_to_one(welded.mesh)
     if isinstance(lengths, np.ndarray):
         lengths = welded.gather(lengths)
     # Only a plug-in that says so is given an array.
@@ -99,6 +95,25 @@ def principal_curvatures(
     found = plugin.estimate(sized, asked, progress)
     tell(progress, 1.0, "done")
     return _spread(welded, found, unit)
+
+
+def sized_to_one(centred: TriangleMesh) -> tuple[TriangleMesh, float]:
+    """Return a mesh of about unit size, so that no square leaves the range of numbers.
+
+    Parameters
+    ----------
+    centred : TriangleMesh
+        A mesh about the origin.
+
+    Returns
+    -------
+    tuple of TriangleMesh and float
+        The mesh, and how long its unit is in those of `centred`: a power of two, which changes no
+        bits.
+    """
+    points = centred.vertices
+    unit = float(2.0 ** np.ceil(np.log2(max(points.max(), -points.min()))))
+    return TriangleMesh.trusted(points * (1.0 / unit), centred.faces), unit
 
 
 def _checked(

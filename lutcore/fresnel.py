@@ -71,6 +71,29 @@ def mean_transmittance(eta: float) -> float:
     return float(2.0 * np.sum(weights * mu * transmittance(mu, eta)))
 
 
+@lru_cache(maxsize=256)
+def internal_moments(eta: float) -> tuple[float, float]:
+    """Return the moments C1 = int_0^1 R mu dmu and C2 = int_0^1 R mu^2 dmu from inside.
+
+    Parameters
+    ----------
+    eta : float
+        Refractive index relative to the outside, 1 or more.
+
+    Returns
+    -------
+    tuple of float
+        Of the reflectance R(mu) of light that meets the surface from inside. 2 C1 is the exact
+        value of what `internal_reflectance` fits.
+    """
+    # Only light inside the critical angle leaves, and as much as enters the other way: with the
+    # cosine c outside, mu^2 = 1 - (1 - c^2)/eta^2 and mu dmu = c dc/eta^2.
+    c, weights = _nodes()
+    leaving = weights * c * transmittance(c, eta) / eta**2
+    mu = np.sqrt(1.0 - (1.0 - c * c) / eta**2)
+    return float(0.5 - np.sum(leaving)), float(1.0 / 3.0 - np.sum(leaving * mu))
+
+
 def internal_reflectance(eta: float) -> float:
     """Return F_dr, the share of diffuse light that the surface reflects back inside.
 

@@ -5,7 +5,7 @@ curvature and leaves quadratics of the surface alone: p(0) = 1 and p'(0) = 0. Tr
 need twice to three times the products with L for the same effect.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -60,16 +60,45 @@ def low_pass(
     D. Hammond, P. Vandergheynst, R. Gribonval, Wavelets on graphs via spectral graph theory,
     Appl. Comput. Harmon. Anal. 30, 2011 (the recurrence).
     """
-    series = [_series(scale, operator.bound) for scale in scales]
+    return filtered(
+        operator, fields, [_series(scale, operator.bound) for scale in scales], progress
+    )
+
+
+def filtered(
+    operator: Laplacian,
+    fields: FloatArray,
+    series: Sequence[FloatArray],
+    progress: Progress = silent,
+) -> SingleArray:
+    """Return how far any polynomials of the Laplacian move the fields, (p(L) - 1) f for each.
+
+    Parameters
+    ----------
+    operator : Laplacian
+        The Laplacian L.
+    fields : ndarray, shape=(n, 6)
+        The fields f.
+    series : sequence of ndarray
+        Of each polynomial, the Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound;
+        see `series_of`.
+    progress : callable
+        Told where the work stands.
+
+    Returns
+    -------
+    ndarray of float32, shape=(S, n, 6)
+        The changes, one after the other.
+    """
     terms = max(len(one) for one in series)
     # An even number: terms are added to the scales in pairs, which halves the traffic to memory.
-    weights = np.zeros((terms + terms % 2, len(scales)), np.float32)
+    weights = np.zeros((terms + terms % 2, len(series)), np.float32)
     for column, one in enumerate(series):
         weights[: len(one), column] = one
     # Unsigned: compiled loops need not ask whether an index counts from the end.
     links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
     before = _apply(*links, fields, 0.5)
-    change = np.empty((len(scales), len(before), FIELDS), np.float32)
+    change = np.empty((len(series), len(before), FIELDS), np.float32)
     now = np.zeros_like(before)
     _step(*links, before, now, np.float32(0.5))
     _begin(before, now, weights[0], weights[1], change)
@@ -153,13 +182,55 @@ def _series(scale: float, bound: float) -> FloatArray:
     k = max(degree(scale, bound), _LEAST_DEGREE)
     # Degrees are whole numbers: a bound that is larger by as much makes the scale exact.
     ample = max(1.0, float(_strengths()[k]) / strength)
-    size = 2 * k
-    angle = np.pi * (np.arange(size) + 0.5) / size
-    y = 0.5 * (1.0 + np.cos(angle))
-    values = (_filter(k, y / ample) - 1.0) / y
+    y = _nodes(2 * k)
+    return _coefficients((_filter(k, y / ample) - 1.0) / y)[:k]
+
+
+def series_of(
+    response: Callable[[FloatArray], FloatArray], bound: float, tolerance: float
+) -> FloatArray:
+    """Return the least polynomial that follows a response, for `filtered`.
+
+    Parameters
+    ----------
+    response : callable
+        From eigenvalues of the Laplacian, 1/mesh unit squared, to what is left of them; 1 at 0.
+    bound : float
+        The Laplacian's.
+    tolerance : float
+        How far the polynomial may be off, above 0; it is 1 at 0.
+
+    Returns
+    -------
+    ndarray
+        Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound.
+    """
+    size = 64
+    while True:
+        found = _coefficients(response(bound * _nodes(size)))
+        rest = np.cumsum(np.abs(found[::-1]))[::-1]
+        terms = max(int(np.searchsorted(-rest, -tolerance)), 2)
+        if terms <= size // 2 or size >= _LARGEST_DEGREE:
+            break
+        size *= 2
+    kept = found[:terms]
+    y = _nodes(terms)
+    start = np.sum(kept[::2]) - np.sum(kept[1::2])  # T_k(-1) = (-1)^k
+    values = np.polynomial.chebyshev.chebval(2.0 * y - 1.0, kept) / start
+    return _coefficients((values - 1.0) / y)[:-1]
+
+
+def _nodes(size: int) -> FloatArray:
+    """Return the Chebyshev nodes of 0 <= y <= 1."""
+    return 0.5 * (1.0 + np.cos(np.pi * (np.arange(size) + 0.5) / size))
+
+
+def _coefficients(values: FloatArray) -> FloatArray:
+    """Return as many Chebyshev coefficients as there are values at `_nodes`."""
+    size = len(values)
     # The cosine transform, as the Fourier transform of the values and their mirror image.
-    turned = np.fft.rfft(np.concatenate([values, values[::-1]]))[:k]
-    coefficients: FloatArray = (turned * np.exp(-0.5j * np.pi * np.arange(k) / size)).real / size
+    turned = np.fft.rfft(np.concatenate([values, values[::-1]]))[:size]
+    coefficients: FloatArray = (turned * np.exp(-0.5j * np.pi * np.arange(size) / size)).real / size
     coefficients[0] *= 0.5
     return coefficients
 

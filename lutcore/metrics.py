@@ -23,13 +23,25 @@ def ciede2000(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> FloatArray:
     ----------
     CIE 142:2001; Sharma, Wu and Dalal 2005. Computed by colour-science.
     """
+    return ciede2000_lab(lab(one / 255.0), lab(other / 255.0))
+
+
+def lab(encoded: FloatArray) -> FloatArray:
+    """Return CIE L*a*b* under D65 of sRGB-encoded values.
+
+    Parameters
+    ----------
+    encoded : ndarray, shape=(..., 3)
+        sRGB-encoded, 0 to 1; not rounded to bytes, whose steps in the dark are a CIEDE2000 of 1.
+
+    Returns
+    -------
+    ndarray, shape=(..., 3)
+        The colours.
+    """
     import colour
 
-    lab = [
-        np.asarray(colour.XYZ_to_Lab(colour.sRGB_to_XYZ(image / 255.0)), dtype=np.float64)
-        for image in (one, other)
-    ]
-    return ciede2000_lab(lab[0], lab[1])
+    return np.asarray(colour.XYZ_to_Lab(colour.sRGB_to_XYZ(encoded)), dtype=np.float64)
 
 
 def ciede2000_lab(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -31,10 +31,12 @@ _LONGEST = 0.05
 
 
 def shading_scale(mesh: TriangleMesh, glow: float) -> float:
-    """Return the scale of curvature and normals that shading needs.
+    """Return one scale of curvature and normals for all that is shaded.
 
-    Light does not see detail finer than the glow is wide, and a scan holds none finer than a few
-    of its spacings: below that normals bring back the scanner's noise.
+    It serves what has no channels: pictures of curvature, the light that leaves towards the eye,
+    predictions. What each channel is shaded with is told by `lutcore.detail`. Light does not see
+    detail finer than the glow is wide, and a scan holds none finer than a few of its spacings:
+    below that normals bring back the scanner's noise.
 
     Parameters
     ----------

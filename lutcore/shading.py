@@ -2,35 +2,45 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numba import prange
 from numpy.typing import ArrayLike
 
 from lutcore.arrays import FloatArray, IndexArray, finite
-from lutcore.baking import resolved
+from lutcore.baking import bake, resolved
 from lutcore.compiled import compiled
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.detail import Detail
+from lutcore.diffusion import DiffusionProfile, diffusion_profile
 from lutcore.errors import ParameterError
 from lutcore.lights import Light, pack
+from lutcore.lut import PsiTable
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import Parameters, create
+from lutcore.progress import Progress, silent
 from lutcore.registry import Registry
 
+if TYPE_CHECKING:
+    from lutcore.prediction import Scene
 
-@dataclass(frozen=True)
+AUTO = "auto"
+"""The name that chooses among the models."""
+
+
+@dataclass(frozen=True, eq=False)
 class ShadingInputs:
-    """All that a local shading model may depend on, vertex by vertex.
+    """All that a shading model may depend on.
 
     Parameters
     ----------
     points : ndarray, shape=(n, 3)
         Positions, mesh units.
     normals : ndarray, shape=(n, 3)
-        Outward unit normals; zero where there is none, which `shade` makes dark.
+        Outward unit normals; zero where there is none, which `exitance` makes dark.
     shape : ndarray, shape=(n, 6)
         Positive (convex) part S+ of the shape operator as a symmetric tensor of the tangent
         plane, 1/mm, in the order xx, yy, zz, xy, yz, xz. Concave curvature is 0, as section 3 of
@@ -39,6 +49,24 @@ class ShadingInputs:
         See `lutcore.lights.pack`.
     material : Material
         What the surface is made of.
+    profile : DiffusionProfile
+        How light spreads under a flat surface of it: part of the medium, the same for all models
+        that are compared.
+    faces : ndarray, shape=(m, 3)
+        Triangles, for models that are not local.
+    mm_per_unit : float
+        Millimetres in one mesh unit.
+    visibility : ndarray, shape=(l, n) or (l, n, 3), optional
+        Share of each light that reaches each vertex, 0 to 1, by channel where light that spreads
+        has softened it; if not given, nothing casts a shadow. A local model never sees it: see
+        `exitance`.
+    progress : callable
+        Told where long work stands; see `lutcore.progress`.
+    curvatures : PrincipalCurvatures, optional
+        What `shape` was taken from, 1/mesh unit, for predicting errors.
+    detail : Detail, optional
+        Normals and S+ by channel, as the light of each sees them, in place of `normals` and
+        `shape`. No model sees it: see `exitance`.
     """
 
     points: FloatArray
@@ -46,11 +74,29 @@ class ShadingInputs:
     shape: FloatArray
     lights: FloatArray
     material: Material
+    profile: DiffusionProfile
+    faces: IndexArray
+    mm_per_unit: float
+    visibility: FloatArray | None = None
+    progress: Progress = silent
+    curvatures: PrincipalCurvatures | None = None
+    detail: Detail | None = None
+
+    @property
+    def table(self) -> PsiTable:
+        """The psi table of the material and the profile, baked once."""
+        return bake(self.material, profile=self.profile)
 
 
 @dataclass(frozen=True)
 class ShadingModel(Parameters, ABC):
-    """Base of every shading plug-in."""
+    """Base of every shading plug-in; `exitance` runs one."""
+
+    local: ClassVar[bool] = True
+    """Whether the value at a vertex depends on nothing of the mesh but that vertex."""
+
+    growth: ClassVar[str] = "n"
+    """How its time grows with the number n of vertices: n (and of lights), n log n or n^2."""
 
     @abstractmethod
     def shade(self, inputs: ShadingInputs) -> FloatArray:
@@ -59,13 +105,57 @@ class ShadingModel(Parameters, ABC):
         Parameters
         ----------
         inputs : ShadingInputs
-            Geometry, lights and material.
+            Geometry, lights and material. The result must be the sum of what the lights give one
+            by one. A model that is not local must multiply each light by its visibility.
 
         Returns
         -------
         ndarray, shape=(n, 3)
             Radiant exitance, linear RGB, before the exit Fresnel factor.
         """
+
+    def predicted_error(self, scene: "Scene") -> FloatArray | None:
+        """Predict how wrong the model will be, without running it.
+
+        Parameters
+        ----------
+        scene : Scene
+            Curvature, its error bar, its change along the surface, and the lights.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3), or None
+            Bound on the absolute error of the exitance against the profile integrated over the
+            true surface, in R_d and the lights' unit of irradiance; see `Scene.error_of`. None
+            where nothing is known: such a model is never chosen.
+        """
+        return None
+
+    @classmethod
+    def rungs(cls) -> tuple["ShadingModel", ...]:
+        """Return the settings of the model that are worth choosing among.
+
+        Returns
+        -------
+        tuple of ShadingModel
+            The default if a model does not say otherwise.
+        """
+        return (cls(),)
+
+    def settled(self, inputs: ShadingInputs) -> "ShadingModel":
+        """Return the model that a scene is shaded with.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            The scene, without visibility.
+
+        Returns
+        -------
+        ShadingModel
+            The model itself but for one that chooses among others.
+        """
+        return self
 
 
 model_registry: Registry[ShadingModel] = Registry(
@@ -80,9 +170,10 @@ def shading_models() -> list[str]:
     Returns
     -------
     list of str
-        Sorted; built-in ones and those that other packages bring.
+        Sorted; built-in ones and those that other packages bring. `AUTO` is not among them: it
+        stands for one of them.
     """
-    return model_registry.names()
+    return [name for name in model_registry.names() if name != AUTO]
 
 
 def shade(
@@ -94,9 +185,13 @@ def shade(
     mm_per_unit: float = 1.0,
     *,
     normals: ArrayLike | None = None,
+    profile: DiffusionProfile | str = "jensen2001",
+    progress: Progress = silent,
+    visibility: ArrayLike | None = None,
+    detail: Detail | None = None,
     **parameters: Any,
 ) -> FloatArray:
-    """Shade a mesh as a translucent body, from its curvature alone.
+    """Shade a mesh as a translucent body.
 
     Parameters
     ----------
@@ -109,11 +204,21 @@ def shade(
     lights : sequence of DirectionalLight, PointLight or ConeLight
         Any number, also none.
     model : str
-        One of `shading_models`.
+        One of `shading_models`, or ``auto`` for the cheapest that suffices.
     mm_per_unit : float
         Millimetres in one mesh unit, above 0.
     normals : array_like, shape=(n, 3), optional
         Outward normals of any length to be used instead of those at the curvature's scale.
+    profile : DiffusionProfile or str
+        How light spreads under a flat surface: a diffusion profile, or the name of one.
+    progress : callable
+        Told where long work stands; see `lutcore.progress`.
+    visibility : array_like, shape=(lights, n) or (lights, n, 3), optional
+        Share of each light that reaches each vertex, 0 to 1: cast shadows; see
+        `lutcore.visibility`. None if not given.
+    detail : Detail, optional
+        From `detail_seen` for this mesh, material, profile and size: local models take each
+        channel's normals and curvature from it, others its bare normals.
     **parameters : object
         The model's parameters.
 
@@ -127,24 +232,151 @@ def shade(
     ------
     ParameterError
         If a name is unknown, a value out of range or an array of the wrong length.
+    CancelledError
+        If `progress` asked to stop.
     """
     chosen = create(model_registry.get(model), f"shading model {model!r}", parameters)
+    inputs = shading_inputs(
+        mesh,
+        curvatures,
+        material,
+        lights,
+        mm_per_unit,
+        normals=normals,
+        profile=profile,
+        progress=progress,
+        visibility=visibility,
+        detail=detail,
+    )
+    return exitance(chosen, inputs)
+
+
+def shading_inputs(
+    mesh: TriangleMesh,
+    curvatures: PrincipalCurvatures,
+    material: Material | str,
+    lights: Sequence[Light],
+    mm_per_unit: float = 1.0,
+    *,
+    normals: ArrayLike | None = None,
+    profile: DiffusionProfile | str = "jensen2001",
+    progress: Progress = silent,
+    visibility: ArrayLike | None = None,
+    detail: Detail | None = None,
+) -> ShadingInputs:
+    """Return what shading models get, checked and prepared once for all of them.
+
+    Parameters
+    ----------
+    mesh, curvatures, material, lights, mm_per_unit
+        As for `shade`.
+    normals, profile, progress, visibility, detail
+        As for `shade`.
+
+    Returns
+    -------
+    ShadingInputs
+        For `exitance`.
+
+    Raises
+    ------
+    ParameterError
+        As `shade`.
+    """
     substance = resolved(material)
     scale = float(finite("mm_per_unit", mm_per_unit, ()))
     if scale <= 0.0:
         raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
     count = len(mesh.vertices)
-    facing, absent = _normals(curvatures.normals if normals is None else normals, count)
-    inputs = ShadingInputs(
+    packed = pack(lights)
+    if detail is not None and detail.normals.shape[1] != count:
+        raise ParameterError(
+            f"detail is of a mesh with {detail.normals.shape[1]} vertices, not {count}"
+        )
+    return ShadingInputs(
         points=mesh.vertices,
-        normals=facing,
+        normals=_normals(curvatures.normals if normals is None else normals, count),
         shape=_shape(curvatures, count, 1.0 / scale),
-        lights=pack(lights),
+        lights=packed,
         material=substance,
+        profile=diffusion_profile(profile),
+        faces=mesh.faces,
+        mm_per_unit=scale,
+        visibility=None if visibility is None else _shares(visibility, len(packed), count),
+        progress=progress,
+        curvatures=curvatures,
+        detail=detail,
     )
-    exitance = chosen.shade(inputs)
-    exitance[absent] = 0.0
-    return exitance
+
+
+def exitance(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
+    """Run a model, with the shadows that others cast and vertices without a normal dark.
+
+    What a local model gives is a sum over lights, so that cast shadows need nothing of it: each
+    light is shaded alone and multiplied by its visibility. And it does not mix channels, so that
+    each is shaded alone with the surface as its light sees it, where `inputs.detail` says so. A
+    model that is not local blurs detail itself, and gets the bare normals.
+
+    Parameters
+    ----------
+    model : ShadingModel
+        The model.
+    inputs : ShadingInputs
+        What it may depend on.
+
+    Returns
+    -------
+    ndarray, shape=(n, 3)
+        Radiant exitance, linear RGB, before the exit Fresnel factor.
+
+    Raises
+    ------
+    CancelledError
+        If the progress asked to stop.
+    """
+    model = model.settled(inputs)
+    if not model.local:
+        out = model.shade(bared(inputs))
+    elif inputs.visibility is None:
+        out = _by_channel(model, inputs)
+    else:
+        out = np.zeros(inputs.points.shape)
+        for light, share in enumerate(inputs.visibility):
+            alone = replace(inputs, lights=inputs.lights[light : light + 1], visibility=None)
+            out += _by_channel(model, alone) * (share if share.ndim == 2 else share[:, None])
+    out[np.einsum("ij,ij->i", inputs.normals, inputs.normals) == 0.0] = 0.0
+    return out
+
+
+def bared(inputs: ShadingInputs) -> ShadingInputs:
+    """Return what a model gets that blurs detail itself.
+
+    Parameters
+    ----------
+    inputs : ShadingInputs
+        Any.
+
+    Returns
+    -------
+    ShadingInputs
+        With the bare normals of the detail, if it has some.
+    """
+    seen = inputs.detail
+    return inputs if seen is None else replace(inputs, normals=seen.bare, detail=None)
+
+
+def _by_channel(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
+    """Run a local model once, or for each channel with what that one's light sees."""
+    seen = inputs.detail
+    if seen is None:
+        return model.shade(inputs)
+    out = np.empty(inputs.points.shape)
+    for channel, (normals, shape) in enumerate(zip(seen.normals, seen.shape, strict=True)):
+        lights = inputs.lights.copy()
+        lights[:, 8:] *= np.arange(3) == channel  # models need not look the others up
+        alone = replace(inputs, normals=normals, shape=shape, lights=lights, detail=None)
+        out[:, channel] = model.shade(alone)[:, channel]
+    return out
 
 
 @compiled()
@@ -224,12 +456,18 @@ def _shape(curvatures: PrincipalCurvatures, count: int, per_mm: float) -> FloatA
     )
 
 
-def _normals(given: ArrayLike, count: int) -> tuple[FloatArray, IndexArray]:
+def _normals(given: ArrayLike, count: int) -> FloatArray:
     normals = finite("normals", given, (count, 3))
     square = np.einsum("ij,ij->i", normals, normals)
-    absent = np.flatnonzero(square == 0.0).astype(np.int32)
-    square[absent] = 1.0
+    square[square == 0.0] = 1.0
     # Unit normals are used as they are: no copy of the curvatures' own.
     if np.max(np.abs(square - 1.0), initial=0.0) > 1e-12:
         normals = normals / np.sqrt(square)[:, None]
-    return normals, absent
+    return normals
+
+
+def _shares(given: ArrayLike, lights: int, count: int) -> FloatArray:
+    shares = finite("visibility", given, (lights, count), (lights, count, 3))
+    if shares.size and not 0.0 <= shares.min() <= shares.max() <= 1.0:
+        raise ParameterError("visibility must be 0 to 1")
+    return shares

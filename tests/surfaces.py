@@ -14,11 +14,12 @@ def torus(
 ) -> tuple[TriangleMesh, PrincipalCurvatures]:
     """Return about `count` vertices of a torus: a sphere-like outside, saddles inside."""
     columns = max(int(np.sqrt(count)), 3)
+    rows = max(count // columns, 3)
     around, across = (
         grid.ravel()
         for grid in np.meshgrid(
             np.linspace(0.0, 2.0 * np.pi, columns, endpoint=False),
-            np.linspace(0.0, 2.0 * np.pi, max(count // columns, 3), endpoint=False),
+            np.linspace(0.0, 2.0 * np.pi, rows, endpoint=False),
         )
     )
     outward = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=1)
@@ -29,8 +30,11 @@ def torus(
     k1 = np.full(len(around), 1.0 / minor)
     k2 = np.cos(across) / (major + minor * np.cos(across))
     zeros = np.zeros(len(around))
-    # One face makes it a mesh: shading looks at vertices alone.
-    mesh = TriangleMesh(major * outward + minor * normals, [[0, 1, 2]])
+    here = np.arange(rows * columns).reshape(rows, columns)
+    right, above = np.roll(here, -1, axis=1), np.roll(here, -1, axis=0)
+    beyond = np.roll(above, -1, axis=1)
+    faces = np.stack([[here, right, beyond], [here, beyond, above]], axis=-1).reshape(3, -1).T
+    mesh = TriangleMesh(major * outward + minor * normals, faces)
     return mesh, PrincipalCurvatures(k1, k2, meridian, along, normals, zeros, 0.0)
 
 
@@ -42,5 +46,15 @@ def sphere(cosines: FloatArray, radius: float) -> tuple[TriangleMesh, PrincipalC
     d2 = np.broadcast_to([0.0, 1.0, 0.0], normals.shape)
     k = np.full(len(cosines), 1.0 / radius)
     points = normals if np.isinf(radius) else radius * normals
+    # One face makes it a mesh: local models look at vertices alone.
     mesh = TriangleMesh(points, [[0, 1, 2]])
     return mesh, PrincipalCurvatures(k, k, d1, d2, normals, np.zeros(len(k)), 0.0)
+
+
+def bent(k1: FloatArray, k2: FloatArray) -> tuple[TriangleMesh, PrincipalCurvatures]:
+    """Return points that differ in nothing but their curvatures, along x and y."""
+    ones = np.ones(len(k1))[:, None]
+    first, second = ones * [1.0, 0.0, 0.0], ones * [0.0, 1.0, 0.0]
+    normals, zeros = ones * [0.0, 0.0, 1.0], np.zeros(len(k1))
+    mesh = TriangleMesh(normals, [[0, 1, 2]])
+    return mesh, PrincipalCurvatures(k1, k2, first, second, normals, zeros, 0.0)

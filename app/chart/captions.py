@@ -1,11 +1,11 @@
 """What stands around a chart: the recommendation above it, and who is who beside it."""
 
 import textwrap
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.chart.data import gathered
-from app.chart.front import percent
 from app.chart.points import Chart
 
 if TYPE_CHECKING:
@@ -52,10 +52,25 @@ def styles_of(chart: Chart) -> dict[str, tuple[str, str]]:
     dict of str to tuple of str
         Colour and marker; charts of the same names draw them alike.
     """
-    names = sorted({p.name for p in chart.points} | {one.name for one in chart.missing})
+    return styles({p.name for p in chart.points} | {one.name for one in chart.missing})
+
+
+def styles(names: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Return how names are drawn.
+
+    Parameters
+    ----------
+    names : iterable of str
+        All that are drawn.
+
+    Returns
+    -------
+    dict of str to tuple of str
+        Colour and marker; the same names are drawn alike.
+    """
     return {
         name: (_COLORS[at % len(_COLORS)], _MARKERS[at % len(_MARKERS)])
-        for at, name in enumerate(names)
+        for at, name in enumerate(sorted(names))
     }
 
 
@@ -129,7 +144,7 @@ def key(
         Line2D([], [], color=styles[name][0], marker=styles[name][1], markersize=6.5, lw=1.4)
         for name in names
     ]
-    words = [f"{name}  {percent(least[name])}" for name in names]
+    words = [f"{name}  {chart.measure.said(least[name])}" for name in names]
     handles.append(Line2D([], [], color=inks.text, alpha=0.6, lw=1.1, linestyle=(0, (1, 1.5))))
     words.append("front: nothing is faster and as good")
     box = drawn.legend(
@@ -140,7 +155,7 @@ def key(
         frameon=False,
         fontsize=9.5,
         labelcolor=inks.text,
-        title="least error of each",
+        title=f"least {chart.measure.title} of each",
         alignment="left",
     )
     box.get_title().set_color(inks.text)

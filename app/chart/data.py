@@ -4,7 +4,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from app.chart.front import microseconds, percent
+from app.chart.measure import microseconds, number
 from app.chart.points import Chart, Missing, Point, Spread
 
 
@@ -30,6 +30,7 @@ def plain(chart: Chart) -> dict[str, object]:
             "name": best.name if best else None,
             "setting": best.setting if best else None,
         },
+        "measure": chart.measure.title,
         "tolerance": chart.tolerance,
         "points": [_plain(point, chart) for point in chart.points],
         "missing": [
@@ -46,10 +47,17 @@ def _plain(point: Point, chart: Chart) -> dict[str, object]:
         "name": point.name,
         "setting": point.setting,
         "microseconds_per_vertex": _spread(point.time, 1e6),
+        **_frame(point, chart),
         "error": _spread(point.error, 1.0),
         "on_front": point in chart.front,
         **point.details,
     }
+
+
+def _frame(point: Point, chart: Chart) -> dict[str, float]:
+    if chart.frame is None:
+        return {}
+    return {"milliseconds_per_frame": 1e3 * point.seconds * chart.frame}
 
 
 def _spread(spread: Spread, factor: float) -> dict[str, float]:
@@ -73,7 +81,8 @@ def as_csv(chart: Chart) -> str:
     str
         A heading, a line for each point, then one for each that gave no figures.
     """
-    details = list(dict.fromkeys(key for point in chart.points for key in point.details))
+    every = [_frame(point, chart) | dict(point.details) for point in chart.points]
+    details = list(dict.fromkeys(key for one in every for key in one))
     figures = ("least", "median", "greatest")
     heading = ["name", "setting"]
     heading += [f"microseconds_per_vertex_{figure}" for figure in figures]
@@ -82,9 +91,9 @@ def as_csv(chart: Chart) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(heading)
-    for point in chart.points:
+    for point, known in zip(chart.points, every, strict=True):
         numbers = [*_spread(point.time, 1e6).values(), *_spread(point.error, 1.0).values()]
-        extra = [f"{point.details[key]:.6g}" if key in point.details else "" for key in details]
+        extra = [f"{known[key]:.6g}" if key in known else "" for key in details]
         marks = [int(point in chart.front), int(point == chart.advice.point)]
         figures_said = [f"{value:.6g}" for value in numbers]
         writer.writerow([point.name, point.setting, *figures_said, *marks, *extra, ""])
@@ -107,20 +116,22 @@ def rows(chart: Chart) -> list[list[str]]:
         The heading, then a row for each point. The last cell marks the front and the
         recommended one.
     """
-    details = [key for key in ("change", "bias") if any(key in p.details for p in chart.points)]
-    table = [["method", "setting", "error", "least to most", "µs/vertex", "median, most"]]
-    table[0] += [*details, ""]
+    measure = chart.measure
+    table = [["method", "setting", measure.title, "least to most", "µs/vertex", "median, most"]]
+    table[0] += [] if chart.frame is None else ["ms/frame"]
+    table[0] += [*(shown.title for shown in chart.columns.values()), ""]
     for point in sorted(chart.points, key=lambda one: one.share):
         mark = "front" if point in chart.front else ""
         table.append(
             [
                 point.name,
                 point.setting or "default",
-                percent(point.share),
-                f"{percent(point.error.least)} to {percent(point.error.greatest)}",
+                measure.said(point.share),
+                f"{measure.said(point.error.least)} to {measure.said(point.error.greatest)}",
                 microseconds(point.seconds),
                 f"{microseconds(point.time.middle)}, {microseconds(point.time.greatest)}",
-                *(percent(point.details[key]) for key in details),
+                *(number(milliseconds) for milliseconds in _frame(point, chart).values()),
+                *(shown.said(point.details[key]) for key, shown in chart.columns.items()),
                 "recommended" if point == chart.advice.point else mark,
             ]
         )

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.chart.captions import Inks, head, key, styles_of
-from app.chart.front import percent
 from app.chart.labels import Box, place
 from app.chart.points import Chart, Point
 
@@ -14,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDE, _HIGH, _DPI = 12.0, 7.5, 130
+_FRAME = 0.05  # what the upper axis takes
 
 
 def png(drawn: "Figure") -> bytes:
@@ -92,20 +92,21 @@ def figure(chart: Chart, inks: Inks, *, headed: bool = True) -> "Figure":
 
     drawn = Figure(figsize=(_WIDE, _HIGH), facecolor=inks.paper)
     top = head(drawn, chart, inks) - 0.02 if headed else 0.98
+    top -= 0.0 if chart.frame is None else _FRAME
     axes = drawn.add_axes((0.07, 0.10, 0.66, top - 0.10), facecolor=inks.paper)
-    _frame(axes, inks)
+    _frame(axes, chart, inks)
     styles = styles_of(chart)
     floor = _floor(chart.points)
     for index, point in enumerate(chart.points):
-        _draw_point(axes, point, styles[point.name], floor, gid(index))
-    _draw_series(axes, chart.points, styles, floor)
+        _draw_point(axes, point, styles[point.name], chart, floor, gid(index))
+    _draw_series(axes, chart, styles, floor)
     _limits(axes, chart, floor)
     _draw_front(axes, chart, floor, inks)
     written = _draw_tolerance(axes, chart, inks)
     key(drawn, chart, styles, inks, top)
     place(
         axes,
-        [(point.label, *_at(point, floor)) for point in chart.front],
+        [(point.label, *_at(point, chart, floor)) for point in chart.front],
         _marks(chart, floor),
         written,
         bold=chart.advice.point.label if chart.advice.point else "",
@@ -121,15 +122,15 @@ def _floor(points: Sequence[Point]) -> float:
     return 0.3 * min(positive, default=0.01)
 
 
-def _at(point: Point, floor: float) -> tuple[float, float]:
-    return 1e6 * point.seconds, 100.0 * max(point.share, floor)
+def _at(point: Point, chart: Chart, floor: float) -> tuple[float, float]:
+    return 1e6 * point.seconds, chart.measure.factor * max(point.share, floor)
 
 
 def _marks(chart: Chart, floor: float) -> list[tuple[float, float]]:
-    return [_at(point, floor) for point in chart.points]
+    return [_at(point, chart, floor) for point in chart.points]
 
 
-def _frame(axes: "Axes", inks: Inks) -> None:
+def _frame(axes: "Axes", chart: Chart, inks: Inks) -> None:
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     axes.set_xscale("log")
@@ -140,20 +141,37 @@ def _frame(axes: "Axes", inks: Inks) -> None:
         spine.set_visible(side in ("left", "bottom"))
         spine.set_color(inks.faint)
     axes.tick_params(which="both", color=inks.faint, labelcolor=inks.text, labelsize=10)
-    for axis in (axes.xaxis, axes.yaxis):
+    known = [axes.xaxis, axes.yaxis]
+    axes.set_xlabel("time for a vertex, µs", color=inks.text, fontsize=11)
+    axes.set_ylabel(chart.measure.heading, color=inks.text, fontsize=11)
+    if chart.frame is not None:
+        each = 1e-3 * chart.frame
+
+        def milliseconds(us: Any) -> Any:
+            return us * each
+
+        def microseconds(ms: Any) -> Any:
+            return ms / each
+
+        upper = axes.secondary_xaxis("top", functions=(milliseconds, microseconds))
+        upper.set_xlabel(
+            f"time for a frame of {chart.frame:,} vertices, ms", color=inks.text, fontsize=11
+        )
+        upper.spines["top"].set_color(inks.faint)
+        upper.tick_params(which="both", color=inks.faint, labelcolor=inks.text, labelsize=10)
+        known.append(upper.xaxis)
+    for axis in known:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.6g}"))
         axis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("time for a vertex, µs", color=inks.text, fontsize=11)
-    axes.set_ylabel("error, %", color=inks.text, fontsize=11)
 
 
 def _draw_point(
-    axes: "Axes", point: Point, style: tuple[str, str], floor: float, name: str
+    axes: "Axes", point: Point, style: tuple[str, str], chart: Chart, floor: float, name: str
 ) -> None:
     color, marker = style
-    x, y = _at(point, floor)
-    time, error = point.time, point.error
-    low, high = 100.0 * max(error.least, floor), 100.0 * max(error.greatest, floor)
+    x, y = _at(point, chart, floor)
+    time, factor = point.time, chart.measure.factor
+    low, high = (factor * max(e, floor) for e in (point.error.least, point.error.greatest))
     axes.plot([1e6 * time.least, 1e6 * time.greatest], [y, y], color=color, alpha=0.55, lw=1.2)
     axes.plot([x, x], [low, high], color=color, alpha=0.55, lw=1.2)
     (drawn,) = axes.plot([x], [y], marker=marker, color=color, markersize=6.5, zorder=4)
@@ -161,14 +179,14 @@ def _draw_point(
 
 
 def _draw_series(
-    axes: "Axes", points: Sequence[Point], styles: dict[str, tuple[str, str]], floor: float
+    axes: "Axes", chart: Chart, styles: dict[str, tuple[str, str]], floor: float
 ) -> None:
     series: dict[tuple[str, str], list[Point]] = {}
-    for point in points:
+    for point in chart.points:
         series.setdefault((point.name, point.series), []).append(point)
     for (name, which), members in series.items():
         members.sort(key=lambda point: point.order)
-        x, y = zip(*(_at(point, floor) for point in members), strict=True)
+        x, y = zip(*(_at(point, chart, floor) for point in members), strict=True)
         dashes: Any = (0, (4, 2)) if which else "solid"
         axes.plot(x, y, color=styles[name][0], linewidth=1.4, alpha=0.8, linestyle=dashes, zorder=3)
 
@@ -180,11 +198,12 @@ def _limits(axes: "Axes", chart: Chart, floor: float) -> None:
     from matplotlib.ticker import LogLocator
 
     times = [1e6 * one for p in chart.points for one in (p.time.least, p.time.greatest)]
+    factor = chart.measure.factor
     errors = [
-        100.0 * max(one, floor) for p in chart.points for one in (p.error.least, p.error.greatest)
+        factor * max(one, floor) for p in chart.points for one in (p.error.least, p.error.greatest)
     ]
     if chart.tolerance is not None:
-        errors.append(100.0 * chart.tolerance)
+        errors.append(factor * chart.tolerance)
     axes.set_xlim(min(times) / 1.8, max(times) * 1.5)
     axes.set_ylim(min(errors) / 2.0, max(errors) * 1.6)
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
@@ -196,7 +215,9 @@ def _draw_front(axes: "Axes", chart: Chart, floor: float, inks: Inks) -> None:
     """Draw what is reached at each time: a stair, for there is nothing between two points."""
     if not chart.front:
         return
-    x, y = (list(values) for values in zip(*(_at(p, floor) for p in chart.front), strict=True))
+    x, y = (
+        list(values) for values in zip(*(_at(p, chart, floor) for p in chart.front), strict=True)
+    )
     top, right = axes.get_ylim()[1], axes.get_xlim()[1]
     stair_x, stair_y = [x[0], *x, right], [top, *y, y[-1]]
     axes.plot(
@@ -210,7 +231,7 @@ def _draw_front(axes: "Axes", chart: Chart, floor: float, inks: Inks) -> None:
         zorder=2,
     )
     if chart.advice.point is not None:
-        at = _at(chart.advice.point, floor)
+        at = _at(chart.advice.point, chart, floor)
         axes.plot(
             [at[0]],
             [at[1]],
@@ -227,10 +248,10 @@ def _draw_tolerance(axes: "Axes", chart: Chart, inks: Inks) -> list[Box]:
     """Draw the line of the tolerance, and return where its words are."""
     if chart.tolerance is None:
         return []
-    y = 100.0 * chart.tolerance
+    y = chart.measure.factor * chart.tolerance
     axes.axhline(y, color=inks.text, linewidth=1.0, linestyle="dashed", alpha=0.7)
     words = axes.annotate(
-        f"tolerance {percent(chart.tolerance)}",
+        f"tolerance {chart.measure.said(chart.tolerance)}",
         (1.0, y),
         xycoords=("axes fraction", "data"),
         xytext=(-2, 3),

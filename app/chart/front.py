@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from app.chart.measure import PERCENT, Measure, microseconds
 from app.chart.points import Advice, Point
 
 FACTOR = 2.0
@@ -34,7 +35,7 @@ def _place(point: Point) -> tuple[float, float]:
     return point.seconds, point.share
 
 
-def advise(front: Sequence[Point], tolerance: float | None) -> Advice:
+def advise(front: Sequence[Point], tolerance: float | None, measure: Measure = PERCENT) -> Advice:
     """Return the fastest point of a front that is accurate enough.
 
     Parameters
@@ -42,8 +43,9 @@ def advise(front: Sequence[Point], tolerance: float | None) -> Advice:
     front : sequence of Point
         From `pareto_front`.
     tolerance : float or None
-        Greatest error that is accepted, as a share; None accepts twice the least error
-        on the front.
+        Greatest error that is accepted; None accepts twice the least error on the front.
+    measure : Measure
+        What the error is.
 
     Returns
     -------
@@ -54,85 +56,34 @@ def advise(front: Sequence[Point], tolerance: float | None) -> Advice:
         return Advice(None, "No recommendation: nothing gave figures.")
     best = front[-1]
     bound = FACTOR * best.share if tolerance is None else tolerance
+    limit = measure.said(bound)
     fit = [point for point in front if point.share <= bound]
     if not fit:
-        return Advice(
-            None,
-            f"Nothing meets {percent(bound)}: the nearest is {said(best)}.",
-        )
+        return Advice(None, f"Nothing meets {limit}: the nearest is {said(best, measure)}.")
     taken = fit[0]
+    words = f"{said(taken, measure)}; nothing faster"
     if tolerance is not None:
-        return Advice(taken, f"{said(taken)}; nothing faster meets {percent(bound)}.")
+        return Advice(taken, f"{words} meets {limit}.")
     if taken.share == best.share:
-        return Advice(taken, f"{said(taken)}; nothing faster is within a factor {FACTOR:g} of it.")
-    return Advice(
-        taken,
-        f"{said(taken)}; nothing faster is within a factor {FACTOR:g} of the least error, "
-        f"{percent(best.share)} by {best.label}.",
-    )
+        return Advice(taken, f"{words} is within a factor {FACTOR:g} of it.")
+    least = f"{measure.title}, {measure.said(best.share)} by {best.label}"
+    return Advice(taken, f"{words} is within a factor {FACTOR:g} of the least {least}.")
 
 
-def said(point: Point) -> str:
+def said(point: Point, measure: Measure = PERCENT) -> str:
     """Return a point in words.
 
     Parameters
     ----------
     point : Point
         Any.
+    measure : Measure
+        What its error is.
 
     Returns
     -------
     str
         Label, error and time.
     """
-    return (
-        f"{point.label}: {percent(point.share)} error at {microseconds(point.seconds)} µs a vertex"
-    )
-
-
-def percent(share: float) -> str:
-    """Return a share as people read it.
-
-    Parameters
-    ----------
-    share : float
-        Not negative.
-
-    Returns
-    -------
-    str
-        In per cent, with its sign.
-    """
-    return f"{number(100.0 * share)} %"
-
-
-def microseconds(seconds: float) -> str:
-    """Return seconds as a number of microseconds.
-
-    Parameters
-    ----------
-    seconds : float
-        Not negative.
-
-    Returns
-    -------
-    str
-        Without the unit.
-    """
-    return number(1e6 * seconds)
-
-
-def number(value: float) -> str:
-    """Return a number that is not negative, to three digits or to whole ones.
-
-    Parameters
-    ----------
-    value : float
-        Any that is not negative.
-
-    Returns
-    -------
-    str
-        Without an exponent up to 100 000.
-    """
-    return f"{value:.0f}" if 100.0 <= value < 1e5 else f"{value:.3g}"
+    error = f"{measure.said(point.share)} {measure.title}"
+    return f"{point.label}: {error} at {microseconds(point.seconds)} µs a vertex"

@@ -8,6 +8,7 @@ import numpy as np
 from app.chart.contestants import Estimating, Subject, contestants, spacing_of
 from app.chart.front import advise, pareto_front
 from app.chart.machine import machine
+from app.chart.measure import Measure
 from app.chart.points import Advice, Chart, Point, Spread
 from app.chart.race import Finished, race
 from lutcore import analytic
@@ -18,6 +19,7 @@ from lutcore.parameters import Parameters, param
 from lutcore.progress import Progress, part
 
 _WARM_UP = 400
+_PARTS = ("change", "bias")
 _TIME = (
     "Time is that of a warm call, joining of vertices included; other packages work in a child "
     "process, the way there and back included. h is the spacing, the root of the median vertex "
@@ -176,6 +178,7 @@ class Run:
             With the front, the recommendation, those without figures and the machine.
         """
         front = pareto_front(points)
+        known = points[0].details if points else {}
         measured = (
             f"Measurements: {self.measuring.repeats}; points at the median error and the least "
             "time, bars from least to greatest."
@@ -190,6 +193,7 @@ class Run:
             tolerance=tolerance,
             machine=machine(),
             facts={**facts, **asdict(self.measuring), "first_call_seconds": self._first},
+            columns={key: Measure(key, 100.0, "%") for key in _PARTS if key in known},
         )
 
 

@@ -1,16 +1,24 @@
 """A chart as one page of HTML that needs nothing else: picture with hints, table, the missing."""
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
+from typing import TYPE_CHECKING
 
 from app.chart.captions import Inks
 from app.chart.data import gathered, rows
 from app.chart.drawing import figure, gid, svg
-from app.chart.front import microseconds, percent
+from app.chart.measure import microseconds
 from app.chart.points import Chart, Point
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Colours that nothing else in the picture has, so that they can be told and follow the theme.
 _TEXT, _FAINT, _PAPER = "#010203", "#040506", "#070809"
+THEMED = Inks(_TEXT, _FAINT, _PAPER)
+"""Colours that follow the page's theme."""
 _STYLE = """
 :root { color-scheme: light dark; --text: #1d2126; --faint: #c9ced4; --paper: #ffffff; }
 @media (prefers-color-scheme: dark) {
@@ -19,7 +27,7 @@ _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: var(--text); background: var(--paper);
   max-width: 1200px; margin: 1.5rem auto; padding: 0 1rem; }
 h1 { font-size: 1.25rem; }
-svg { width: 100%; height: auto; }
+svg, img { width: 100%; height: auto; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .15rem .9rem .15rem 0; border-bottom: 1px solid var(--faint); }
@@ -28,13 +36,32 @@ tr.recommended { font-weight: bold; }
 """
 
 
-def page(chart: Chart) -> str:
+@dataclass(frozen=True)
+class Section:
+    """What stands below a chart on its page.
+
+    Parameters
+    ----------
+    title, words : str
+        Shown, not obeyed, whatever they hold.
+    body : str
+        HTML.
+    """
+
+    title: str
+    words: str
+    body: str
+
+
+def page(chart: Chart, sections: Sequence[Section] = ()) -> str:
     """Return a chart as HTML.
 
     Parameters
     ----------
     chart : Chart
         Any; whatever its texts hold is shown, not obeyed.
+    sections : sequence of Section
+        What else belongs to it.
 
     Returns
     -------
@@ -44,6 +71,10 @@ def page(chart: Chart) -> str:
     machine = ", ".join(f"{key} {value}" for key, value in chart.machine.items())
     absent = "".join(
         f"<li>{escape(who)}: {escape(reason)}</li>\n" for who, reason in gathered(chart.missing)
+    )
+    below = "".join(
+        f"<h2>{escape(one.title)}</h2>\n<p>{escape(one.words)}</p>\n{one.body}\n"
+        for one in sections
     )
     without = f"<h2>Without figures</h2>\n<ul>\n{absent}</ul>\n" if absent else ""
     return (
@@ -55,31 +86,50 @@ def page(chart: Chart) -> str:
         f"<p>{escape(chart.subject)}</p>\n"
         f"{_picture(chart)}\n"
         f"<p>{escape(' '.join(chart.meaning))}</p>\n"
-        f'<div class="wide">\n{_table(chart)}</div>\n{without}'
+        f'<div class="wide">\n{_table(chart)}</div>\n{without}{below}'
         f"<p>Measured with {escape(machine)}.</p>\n</body>\n</html>\n"
     )
 
 
 def _picture(chart: Chart) -> str:
-    drawn = svg(figure(chart, Inks(_TEXT, _FAINT, _PAPER), headed=False))
-    drawn = drawn[drawn.index("<svg") :]
-    drawn = re.sub(r"<metadata>.*?</metadata>", "", drawn, flags=re.DOTALL)
-    drawn = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", drawn, count=1)
-    drawn = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", drawn, count=1)
-    for color, name in ((_TEXT, "text"), (_FAINT, "faint"), (_PAPER, "paper")):
-        drawn = drawn.replace(color, f"var(--{name})")
+    drawn = inline(figure(chart, THEMED, headed=False))
     for index, point in enumerate(chart.points):
         group = f'<g id="{gid(index)}">'
-        drawn = drawn.replace(group, f"{group}<title>{escape(_hint(point))}</title>", 1)
+        hint = escape(_hint(point, chart))
+        drawn = drawn.replace(group, f"{group}<title>{hint}</title>", 1)
     return drawn
 
 
-def _hint(point: Point) -> str:
+def inline(drawn: "Figure") -> str:
+    """Return a figure as SVG that stands in a page, as wide as it and in its colours.
+
+    Parameters
+    ----------
+    drawn : Figure
+        Of matplotlib, drawn with `THEMED`.
+
+    Returns
+    -------
+    str
+        An svg element.
+    """
+    text = svg(drawn)
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", text, count=1)
+    text = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", text, count=1)
+    for color, name in ((_TEXT, "text"), (_FAINT, "faint"), (_PAPER, "paper")):
+        text = text.replace(color, f"var(--{name})")
+    return text
+
+
+def _hint(point: Point, chart: Chart) -> str:
     """Return what is shown while the pointer rests on a point."""
-    time, error = point.time, point.error
+    time, error, said = point.time, point.error, chart.measure.said
     lines = [
         point.label,
-        f"error {percent(point.share)} ({percent(error.least)} to {percent(error.greatest)})",
+        f"{chart.measure.title} {said(point.share)} "
+        f"({said(error.least)} to {said(error.greatest)})",
         f"{microseconds(time.least)} µs a vertex "
         f"(median {microseconds(time.middle)}, greatest {microseconds(time.greatest)})",
     ]

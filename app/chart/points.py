@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
+from app.chart.measure import PERCENT, Measure
+
 
 @dataclass(frozen=True)
 class Spread:
@@ -49,7 +51,7 @@ class Point:
     time : Spread
         Seconds for a vertex.
     error : Spread
-        Share: 0.01 is 1 %.
+        In the chart's measure: of a share, 0.01 is 1 %.
     series : str
         Points of one name and one series are joined by a line.
     order : float
@@ -73,7 +75,7 @@ class Point:
 
     @property
     def share(self) -> float:
-        """Error as a share: the median of the repeats."""
+        """The error: the median of the repeats."""
         return self.error.middle
 
     @property
@@ -139,6 +141,12 @@ class Chart:
         What it was measured with.
     facts : mapping of str to object
         What a script wants to know beside it: the settings of the run.
+    measure : Measure
+        What the error is.
+    columns : mapping of str to Measure
+        Details that belong into a table for people.
+    frame : int or None
+        Vertices that are worked on for one picture, where that is a figure worth saying.
     """
 
     subject: str
@@ -150,3 +158,6 @@ class Chart:
     tolerance: float | None
     machine: Mapping[str, str]
     facts: Mapping[str, object]
+    measure: Measure = PERCENT
+    columns: Mapping[str, Measure] = field(default_factory=dict)
+    frame: int | None = None

@@ -30,6 +30,8 @@ class Contestant(Generic[S, R]):
         Does the work on a subject; asks its progress now and then whether to stop.
     effort : float
         Grows with the time it takes, among those of one series; NaN if that is not known.
+    order : float
+        Its place along its series, where that is known before it runs.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Contestant(Generic[S, R]):
     series: str
     run: Callable[[S, Progress], R]
     effort: float = 0.0
+    order: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Shading models side by side, with one camera, one exposure and the same lights.
 
---difference adds the CIEDE2000 difference of the first two on the surface.
+--difference adds the CIEDE2000 difference of the others from the first on the surface.
 """
 
 import argparse
@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     options.add_mesh(parser)
     parser.add_argument("--models", metavar="A,B[,...]", help="shading models, two or more")
     parser.add_argument(
-        "--difference", action="store_const", const=True, help="add CIEDE2000 of the first two"
+        "--difference", action="store_const", const=True, help="add CIEDE2000 against the first"
     )
     options.add_shading(parser, words, with_model=False)
     options.add_curvature(parser, words)
@@ -54,8 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.session:
         raise ParameterError("say which models: --models lambert,curvature-lut")
     if arguments.size is None and arguments.models and not arguments.session:
-        count = len(names) + bool(arguments.difference)
-        fixed["size"] = (_PANEL * count, _PANEL)
+        below = bool(arguments.difference) and len(names) > 2
+        count = len(names) + (bool(arguments.difference) and not below)
+        fixed["size"] = (_PANEL * count, _PANEL * (1 + below))
     session = options.session_from(arguments, difference=arguments.difference, **fixed)
     work = Run(arguments, session)
     work.require(".png")
@@ -66,9 +67,9 @@ def run(arguments: argparse.Namespace) -> int:
         "exposure": made.exposure,
         "ciede2000": made.difference,
     }
-    text = f"wrote {arguments.output}"
-    if made.difference:
-        text = ", ".join(f"{key} {value:.3g}" for key, value in made.difference.items())
-        text = f"CIEDE2000 of the first two: {text}\nwrote {arguments.output}"
-    work.finish(result, text)
+    lines = [
+        f"CIEDE2000 of {label}: " + ", ".join(f"{key} {value:.3g}" for key, value in found.items())
+        for label, found in (made.difference or {}).items()
+    ]
+    work.finish(result, "\n".join([*lines, f"wrote {arguments.output}"]))
     return 0

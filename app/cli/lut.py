@@ -6,7 +6,9 @@
 import argparse
 from pathlib import Path
 
+from app.cli import options
 from app.cli.console import answer
+from app.session import Session
 
 
 def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -21,8 +23,9 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     """
     parser.add_argument("material", metavar="MATERIAL", help="see curvelight materials")
     parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
+    options.add_profile(parser, words)
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--samples", type=int, default=64, metavar="N", help="knots of psi (64)")
+    size.add_argument("--samples", type=int, metavar="N", help="knots of psi; else 1e-6 exact")
     size.add_argument(
         "--plane", type=int, metavar="N", help="the paper's 2-D table, N x N, instead of psi"
     )
@@ -44,16 +47,21 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from app.lutfile import save_table
     from lutcore.baking import bake, bake_plane
+    from lutcore.diffusion import diffusion_profile
 
-    baked = bake(arguments.material, samples=arguments.samples)
+    method = options.profile_from(arguments, Session())
+    profile = diffusion_profile(method.name, **method.parameters)
+    baked = bake(arguments.material, arguments.samples, profile)
     if arguments.plane is None:
         save_table(arguments.output, baked)
     else:
-        save_table(arguments.output, bake_plane(arguments.material, arguments.plane))
+        plane = bake_plane(arguments.material, arguments.plane, profile=profile)
+        save_table(arguments.output, plane)
     result = {
         "material": arguments.material,
         "output": str(arguments.output),
-        "samples": arguments.plane or arguments.samples,
+        "profile": method.name,
+        "samples": arguments.plane or baked.samples,
         "diffuse_reflectance": baked.total.tolist(),
         "psi0": baked.psi[:, 0].tolist(),
         "mean_free_path_mm": baked.mean_free_path.tolist(),

@@ -20,7 +20,7 @@ COMMANDS = {
     "shade": "shade as a translucent material: a picture, or data",
     "compare": "shading models side by side",
     "choose": "which shading model is enough for a scene, and why",
-    "stability": "which estimators survive broken meshes, and by how much",
+    "stability": "where curvature estimators and shading models fail, and by how much",
     "chart": "speed against accuracy, and one recommendation",
     "lut": "a material's tables as npz, EXR or PNG",
     "models": "list shading models, diffusion profiles, curvature estimators and their parameters",

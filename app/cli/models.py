@@ -1,4 +1,4 @@
-"""List the shading models and curvature estimators with their parameters."""
+"""List the shading models, diffusion profiles and curvature estimators with their parameters."""
 
 import argparse
 from typing import Any
@@ -35,10 +35,11 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
+    from lutcore.diffusion import profile_registry
     from lutcore.estimation import estimator_registry
     from lutcore.shading import model_registry
 
-    registries: list[Registry[Any]] = [model_registry, estimator_registry]
+    registries: list[Registry[Any]] = [model_registry, profile_registry, estimator_registry]
     result: dict[str, object] = {}
     lines: list[str] = []
     for registry in registries:

@@ -7,7 +7,7 @@ from typing import Any, get_args
 from msgspec.structs import replace
 
 from app import session as state
-from app.session import Cone, Directional, Method, Point, Quantity, Session, Vector
+from app.session import Cone, Directional, Method, Point, Quantity, Session, Shadows, Vector
 from lutcore.errors import ParameterError
 from lutcore.parameters import Choice, declared
 from lutcore.registry import Registry
@@ -128,14 +128,14 @@ def add_peers(parser: argparse.ArgumentParser) -> None:
 
 
 def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: bool = True) -> None:
-    """Add the flags of shading, the model's own parameters included.
+    """Add the flags of shading, the parameters of the model and the profile included.
 
     Parameters
     ----------
     parser : ArgumentParser
         Of the command.
     words : list of str
-        The command's arguments: they say which model.
+        The command's arguments: they say which model and which profile.
     with_model : bool
         Whether the command takes one model.
     """
@@ -146,6 +146,12 @@ def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: b
         group.add_argument("--model", metavar="NAME", help="shading model; see curvelight models")
         _add_parameters(parser, model_registry, _chosen(words, "--model", "model"))
     group.add_argument("--material", metavar="NAME", help="see curvelight materials")
+    add_profile(parser, words)
+    group.add_argument(
+        "--shadows",
+        choices=get_args(Shadows),
+        help="whether the surface casts shadows on itself; auto: where they change more than 1 %%",
+    )
     lights = {
         "--light": (_directional, "X,Y,Z[,E]", "directional light TO x,y,z"),
         "--camera-light": (_camera_directional, "X,Y,Z[,E]", "the same in the camera's axes"),
@@ -169,6 +175,44 @@ def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: b
         dest="albedo",
         help="ignore the file's vertex colours",
     )
+
+
+def add_profile(parser: argparse.ArgumentParser, words: list[str]) -> None:
+    """Add the flags of the diffusion profile, its own parameters included.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    words : list of str
+        The command's arguments: they say which profile.
+    """
+    from lutcore.diffusion import profile_registry
+
+    parser.add_argument(
+        "--profile",
+        metavar="NAME",
+        help="how light spreads in the material; see curvelight models",
+    )
+    _add_parameters(parser, profile_registry, _chosen(words, "--profile", "profile"))
+
+
+def profile_from(arguments: argparse.Namespace, start: Session) -> Method:
+    """Return the diffusion profile that the arguments name.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of a command that used `add_profile`.
+    start : Session
+        Its profile is taken where they name none.
+
+    Returns
+    -------
+    Method
+        The profile.
+    """
+    return _method(start.profile, vars(arguments), "diffusion profile", "profile")
 
 
 def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
@@ -204,9 +248,10 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
         changes["peers"] = tuple(Method(name) for name in given["peers"])
     if given.get("lights"):
         changes["lights"] = tuple(given["lights"])
-    if given.get("scale"):
+    if given.get("scale") is not None:
         start = _with_scale(start, given["scale"])
     changes["estimator"] = _method(start.estimator, given, "curvature estimator", "method")
+    changes["profile"] = profile_from(arguments, start)
     changes["model"] = _method(start.model, given, "shading model", "model")
     return state.replaced(start, **changes)
 
@@ -216,6 +261,7 @@ _PLAIN = (
     "mesh",
     "mm_per_unit",
     "material",
+    "shadows",
     "exposure",
     "albedo",
     "quantity",

@@ -58,9 +58,13 @@ def run(arguments: argparse.Namespace) -> int:
         exposure = exposure or auto_exposure(exitance)
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
+    seen = work.pipeline.detail(work.session)
     result = work.summary(warnings) | {
         "material": work.pipeline.material(work.session).name,
+        "profile": work.session.profile.name,
         "model": work.session.model.name,
+        "scale": work.pipeline.scale(work.session),
+        "widths": None if seen is None else seen.widths.tolist(),
         "exposure": exposure,
         "exitance": {
             name: percentiles(exitance[:, channel])

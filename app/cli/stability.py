@@ -1,23 +1,22 @@
-"""Run a gallery of broken meshes over every estimator: who survives, and by how much.
+"""Run what is to be tested through everything that breaks it: who survives, and by how much.
 
-Each case has one defect, an exact truth, and a twin without the defect. .png is a picture of the
-table, .html the same with all that is known of each cell, .csv one row for each case and
-estimator, .json everything.
+--curvature: a gallery of broken meshes over every curvature estimator. Each case has one defect, an
+exact truth, and a twin without the defect.
+
+--shading: every local shading model on balls of many curvatures and substances, under light from
+all heights; their failing regions are outlined and named. And noise in curvature, seams at clamps,
+absorption that goes to 0, curvature that goes to 0 or leaves the tables.
+
+.png is a picture, .html the same with all that is known of each cell, .csv one row for each cell,
+.json everything.
 """
 
 import argparse
-import math
-import time
-from pathlib import Path
-from typing import TYPE_CHECKING
+from types import ModuleType
 
-from app.cli.console import answer, progress, table
 from lutcore.errors import ParameterError
 
-if TYPE_CHECKING:
-    from app.stability import Outcome, Report
-
-_LIMIT = 5.0
+_KINDS = ("--curvature", "--shading")
 
 
 def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -31,24 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
         The command's arguments.
     """
     parser.add_argument(
-        "--curvature", action="store_true", help="test the curvature estimators (needed)"
+        "--curvature", action="store_true", help="test the curvature estimators (or --shading)"
     )
-    parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
-    parser.add_argument(
-        "--methods", metavar="A,B[,...]", help="estimators; all if not given (curvelight models)"
-    )
-    parser.add_argument("--cases", metavar="A,B[,...]", help="cases; all if not given")
-    parser.add_argument(
-        "--limit",
-        type=float,
-        default=_LIMIT,
-        metavar="SECONDS",
-        help=f"time for one call, after which it is stopped and counts as dead ({_LIMIT:g})",
-    )
-    parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="of everything random in the cases (0)"
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--shading", action="store_true", help="test the shading models")
+    _kind("--shading" in words).add_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -64,92 +49,18 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
-    from app import stability_files
-    from app.stability import examine
-    from app.writing import check_writable
-    from lutcore.estimation import estimators
-    from lutcore.gallery import catalogue
-
-    if not arguments.curvature:
-        raise ParameterError("say what is tested: --curvature, the only gallery so far")
-    if not 0.0 < arguments.limit < math.inf:
-        raise ParameterError(f"--limit = {arguments.limit:g} is not a time; give seconds above 0")
-    output: Path = arguments.output
-    if output.suffix.lower() not in stability_files.SUFFIXES:
-        name = output.suffix or output.name
-        raise ParameterError.unknown("output format", name, stability_files.SUFFIXES)
-    methods = _chosen("curvature estimator", arguments.methods, estimators())
-    names = _chosen("case", arguments.cases, catalogue.names())
-    check_writable(output)
-    start = time.perf_counter()
-    report = examine(
-        [catalogue.build(name, arguments.seed) for name in names],
-        methods,
-        seed=arguments.seed,
-        limit=arguments.limit,
-        progress=progress(arguments),
-    )
-    stability_files.save(output, report)
-    result = {"output": str(output)} | stability_files.record(report)
-    result["seconds"] = round(time.perf_counter() - start, 3)
-    answer(arguments, result, f"{_text(report)}\nwrote {output}")
-    return 0
+    if arguments.curvature == arguments.shading:
+        raise ParameterError(f"say what is tested: {' or '.join(_KINDS)}")
+    code: int = _kind(arguments.shading).run(arguments)
+    return code
 
 
-def _chosen(kind: str, given: str | None, choices: list[str]) -> list[str]:
-    if given is None:
-        return choices
-    # A name that is given twice counts once.
-    wanted = list(dict.fromkeys(name.strip() for name in given.split(",")))
-    for name in wanted:
-        if name not in choices:
-            raise ParameterError.unknown(kind, name, choices)
-    return wanted
+def _kind(shading: bool) -> ModuleType:
+    # Each has its own flags: --help shows those of the one that is asked for.
+    if shading:
+        from app.cli import stability_of_shading
 
+        return stability_of_shading
+    from app.cli import stability_of_curvature
 
-def _text(report: "Report") -> str:
-    from lutcore.gallery.judgement import REASONS
-
-    columns = range(1, len(report.methods) + 1)
-    grid = [["case", *map(str, columns)]]
-    grid += [
-        [case.name, *(_cell(report.outcomes[case.name, one]) for one in report.methods)]
-        for case in report.cases
-    ]
-    ranking = [["", "estimator", *map(str, REASONS)]]
-    for column, method in zip(columns, report.methods, strict=True):
-        ranking.append([str(column), method, *map(str, report.count(method).values())])
-    meaning = [f"{verdict}: {reason}" for verdict, reason in REASONS.items()]
-    said = [f"{method}: {words}" for method, words in _messages(report)]
-    return "\n".join(
-        [
-            table(grid),
-            "",
-            "RMS error over RMS curvature; ~ degraded, x wrong",
-            *meaning,
-            "",
-            *([*said, ""] if said else []),
-            table(ranking),
-        ]
-    )
-
-
-def _messages(report: "Report") -> list[tuple[str, str]]:
-    """Return who said what and where, each message once."""
-    found: dict[tuple[str, str], list[str]] = {}
-    for (case, method), outcome in report.outcomes.items():
-        if outcome.message:
-            words = outcome.message.removeprefix(f"{method}: ")
-            found.setdefault((method, words), []).append(case)
-    every = len(report.cases)
-    return [
-        (method, f"{message} ({'all cases' if len(cases) == every else ', '.join(cases)})")
-        for (method, message), cases in found.items()
-    ]
-
-
-def _cell(outcome: "Outcome") -> str:
-    from app.stability_look import LOOKS, number
-
-    plain = LOOKS[outcome.verdict].plain
-    return plain if outcome.score is None else number(outcome.score.error) + plain
+    return stability_of_curvature

@@ -14,6 +14,7 @@ from lutcore.arrays import FloatArray
 from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
+    from app.failing import Failing
     from app.picture import Picture
 
 
@@ -89,6 +90,16 @@ class Run:
             note(self.arguments, f"{self.session.mesh}: {warning}")
         return warnings
 
+    def _failing(self) -> "list[Failing]":
+        unheard = self.arguments.quiet and not self.arguments.json
+        if self.session.view == "curvature" or unheard:
+            return []
+        from app.failing import failing
+
+        comparing = self.session.view == "compare"
+        models = self.session.compared if comparing else (self.session.model,)
+        return failing(self.session, self.pipeline, models)
+
     def exitance(self, camera: Camera | None = None) -> FloatArray:
         """Return the radiant exitance that the session's model gives.
 
@@ -128,7 +139,7 @@ class Run:
         return made
 
     def summary(self, warnings: list[str]) -> dict[str, object]:
-        """Return what every command's JSON object begins with.
+        """Return what every command's JSON object begins with, and warn of models that fail.
 
         Parameters
         ----------
@@ -138,9 +149,12 @@ class Run:
         Returns
         -------
         dict
-            Mesh, its digest and size, scale, output, warnings, seconds.
+            Mesh, its digest and size, scale, output, warnings, models that fail, seconds.
         """
         subject = self.pipeline.subject(self.session)
+        failing = self._failing()
+        for one in failing:
+            note(self.arguments, f"{self.session.mesh}: {one.sentence}")
         return {
             "mesh": self.session.mesh,
             "sha256": subject.loaded.digest,
@@ -148,7 +162,8 @@ class Run:
             "faces": len(subject.mesh.faces),
             "mm_per_unit": self.pipeline.mm_per_unit(self.session),
             "output": str(self.output),
-            "warnings": warnings,
+            "warnings": [*warnings, *(one.sentence for one in failing)],
+            "failing": [one.as_json() for one in failing],
             "seconds": round(time.perf_counter() - self._start, 3),
         }
 

@@ -22,6 +22,27 @@ class Jensen2001(DiffusionProfile):
        Subsurface Light Transport", SIGGRAPH 2001.
     """
 
+    def radial(self, r: FloatArray, optics: Optics) -> FloatArray:
+        """Return R(r): eq. 4.
+
+        Parameters
+        ----------
+        r : ndarray
+            Distance along the surface, l_u.
+        optics : Optics
+            Constants of the channel.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of `r`.
+        """
+        beta, profile = optics.beta, np.zeros_like(r)
+        for z in (1.0, optics.depth):
+            d = np.hypot(z, r)
+            profile += z * (1.0 + beta * d) * np.exp(-beta * d) / d**3
+        return optics.albedo / (4.0 * np.pi) * profile
+
     def line_spread(self, x: FloatArray, optics: Optics) -> FloatArray:
         """Return g(x) = alpha'/(4 pi) sum over z in {1, B} of 2 z beta K1(beta d)/d.
 

@@ -6,11 +6,11 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
-from lutcore.baking import bake
 from lutcore.compiled import compiled
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
+from lutcore.prediction import Knowledge, Scene
 from lutcore.shading import ShadingInputs, ShadingModel, invariants, model_registry
 
 
@@ -33,10 +33,14 @@ class Kolchin2007Simplified(ShadingModel):
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        table = bake(inputs.material)
+        table = inputs.table
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
         total = table.total * mean_transmittance(table.eta)
         return _exitance(*arguments, total, table.mean_free_path, table.rows, table.inverse_step)
+
+    def predicted_error(self, scene: Scene) -> FloatArray:
+        """Predict how wrong it is; see `ShadingModel.predicted_error`."""
+        return scene.error_of(Knowledge(scene.mean_entering, bend="rms", anisotropy=1.0))
 
 
 @compiled(parallel=True)
@@ -66,6 +70,8 @@ def _exitance(
                 squares = invariants(shape, i)[1]
                 kappa[k] = np.sqrt(max(1.0 - cosine[k] * cosine[k], 0.0) * 0.5 * squares)
             for c in range(3):
+                if lights[light, 8 + c] == 0.0:
+                    continue
                 p = even_forms(weight, corner, cosine, kappa, length[c], rows, steps, c)
                 for k in range(count):
                     out[first + k, c] += lights[light, 8 + c] * strength[k] * total[c] * p[k]

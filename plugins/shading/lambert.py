@@ -6,11 +6,11 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
-from lutcore.baking import bake
 from lutcore.compiled import compiled
 from lutcore.fresnel import compiled_transmittance, mean_transmittance
 from lutcore.lights import light_at
 from lutcore.parameters import choice
+from lutcore.prediction import Knowledge, Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 
@@ -31,11 +31,21 @@ class Lambert(ShadingModel):
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        table = bake(inputs.material)
+        table = inputs.table
         directional = self.fresnel == "directional"
         total = table.total if directional else table.total * mean_transmittance(table.eta)
         arguments = (inputs.points, inputs.normals, inputs.lights, total)
         return _lambert(*arguments, table.eta, directional)
+
+    def predicted_error(self, scene: Scene) -> FloatArray:
+        """Predict how wrong it is; see `ShadingModel.predicted_error`."""
+        flat = scene.mean_entering if self.fresnel == "mean" else scene.entering
+        return scene.error_of(Knowledge(flat, bend="none"))
+
+    @classmethod
+    def rungs(cls) -> tuple[ShadingModel, ...]:
+        """Return both transmittances; see `ShadingModel.rungs`."""
+        return cls(), cls(fresnel="directional")
 
 
 @compiled(parallel=True)

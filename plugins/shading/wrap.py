@@ -6,11 +6,11 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
-from lutcore.baking import bake
 from lutcore.compiled import compiled
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.parameters import param
+from lutcore.prediction import COSINES, Knowledge, Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 
@@ -32,9 +32,15 @@ class Wrap(ShadingModel):
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        table = bake(inputs.material)
+        table = inputs.table
         total = table.total * mean_transmittance(table.eta)
         return _wrap(inputs.points, inputs.normals, inputs.lights, total, self.width)
+
+    def predicted_error(self, scene: Scene) -> FloatArray:
+        """Predict how wrong it is; see `ShadingModel.predicted_error`."""
+        wrapped = np.maximum(0.0, (COSINES + self.width) / (1.0 + self.width))
+        flat = mean_transmittance(scene.table.eta) * wrapped
+        return scene.error_of(Knowledge(flat, bend="none"))
 
 
 @compiled(parallel=True)

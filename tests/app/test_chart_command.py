@@ -83,7 +83,6 @@ def test_where_noise_drowns_all_nothing_is_recommended(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (["-o", "a.png"], 2, "--curvature"),
         (["--curvature", "-o", "a.pdf"], 2, "unknown output format '.pdf'"),
         (["--curvature", "-o", "none/a.png"], 1, "make the folder first"),
         (["--curvature", "-o", "a.png", "--methods", "vtl"], 2, "did you mean 'vtk'"),

@@ -73,12 +73,22 @@ def test_a_stronger_light_needs_a_lower_exposure_and_gives_the_same_picture(pipe
 def test_a_comparison_has_one_exposure_and_states_the_difference(pipeline):
     pair = (Method("lambert"), Method("curvature-lut"))
     made = render(replace(TORUS, view="compare", compared=pair, difference=True), pipeline)
-    assert set(made.difference) == {"mean", "p99", "max"}
+    assert set(made.difference["curvature-lut"]) == {"mean", "p99", "max"}
     same = render(replace(TORUS, view="compare", compared=(pair[0], pair[0])), pipeline)
     half = same.image.shape[1] // 2
     # One step in 255: the halves lie at different places, so interpolation rounds differently.
     apart = np.abs(np.subtract(same.image[:90, :half], same.image[:90, half:], dtype=int))
     assert apart.max() <= 1
+
+
+def test_differences_of_several_models_lie_below_them(pipeline):
+    three = (Method("lambert"), Method("lambert"), Method("curvature-lut"))
+    made = render(replace(TORUS, view="compare", compared=three, difference=True), pipeline)
+    assert made.difference["lambert"]["max"] == 0.0 < made.difference["curvature-lut"]["mean"]
+    height, width, _ = made.image.shape
+    top = made.image[: height // 2 - 20, : width // 3]
+    bar = made.image[height // 2 :, : width // 3]
+    assert np.abs(top.mean(axis=(0, 1)) - bar.mean(axis=(0, 1))).max() > 1.0
 
 
 def test_a_comparison_of_one_is_refused(pipeline):

@@ -36,6 +36,8 @@ def changed(**fields):
         changed(lights=(Directional((0.0, 0.0, 1.0)),)),
         changed(estimator=Method("co-smoothing"), scale=1.0),
         changed(model=Method("lambert")),
+        changed(profile=Method("burley2015")),
+        changed(profile=Method("donner-jensen2005", {"thickness": 3.0})),
         changed(model=Method("curvature-lut", {"hinges": 8})),
     ],
 )
@@ -74,6 +76,14 @@ def test_automatic_scale_of_shading_is_no_finer_than_the_glow_and_the_spacing():
     assert pipeline.scale(fine) == pytest.approx(3.0 * np.sqrt(1382.0 / 4000.0), rel=0.05)
     assert pipeline.scale(changed(estimator=Method("auto"), view="curvature")) is None
     assert pipeline.scale(changed(scale=2.0)) == 2.0
+
+
+def test_the_glow_is_that_of_the_profile():
+    pipeline = Pipeline()
+    thin = changed(material="marble", profile=Method("donner-jensen2005", {"thickness": 3.0}))
+    assert pipeline.glow(thin) < pipeline.glow(changed(material="marble"))
+    with pytest.raises(ParameterError, match="jensen2001"):
+        pipeline.glow(changed(profile=Method("jensen2002")))
 
 
 def test_a_material_may_be_given_by_its_coefficients():

@@ -28,6 +28,7 @@ FULL = Session(
         Point((1.0, 2.0, 3.0)),
         Cone((1.0, 2.0, 3.0), (0.0, 0.0, -1.0), (2.0, 2.0, 2.0), 20.0),
     ),
+    profile=Method("donner-jensen2005", {"thickness": 12.0}),
     model=Method("curvature-lut", {"hinges": 6.0}),
     compared=(Method("lambert", {"fresnel": "directional"}), Method("wrap")),
     difference=True,
@@ -42,6 +43,13 @@ FULL = Session(
 @pytest.mark.parametrize("session", [Session(), FULL])
 def test_a_session_comes_back_from_json_as_it_was(session):
     assert from_json(to_json(session)) == session
+
+
+def test_a_session_saved_before_profiles_were_named_has_the_dipole():
+    text = to_json(Session()).replace(b'"profile"', b'"ignored"')
+    older = msgspec.json.decode(text)
+    assert older.pop("ignored")["name"] == "jensen2001"
+    assert from_json(msgspec.json.encode(older)) == Session()
 
 
 def test_a_session_comes_back_from_a_file_as_it_was(tmp_path, monkeypatch):

@@ -2,8 +2,10 @@
 
 1. psi tables of all materials: largest error in units of R_d against adaptive quadrature of the
    paper's double integral, at the place where the table is worst; and the time of an RGB bake.
-2. Models on a sphere, skin1 red: relative L2 error over the whole sphere (by area, dark side
-   included) against the dipole integrated over the true sphere with F_t inside, per cent.
+2. Every local model on a sphere, skin1 red: relative L2 error over the whole sphere (by area, dark
+   side included) against the dipole integrated over the true sphere with F_t inside, per cent.
+   `curvature-lut-physical` is made for another truth, the random walk: see shading_truth.
+3. The light that leaves that sphere, over what would leave it if every place were flat.
 """
 
 import argparse
@@ -15,22 +17,26 @@ import numpy as np
 
 from lutcore.baking import BETA_FLOOR, bake, bake_plane
 from lutcore.diffusion import Optics, optics
+from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight
 from lutcore.lut import PsiTable, even_form
 from lutcore.materials import material, materials
-from lutcore.shading import shade
+from lutcore.shading import model_registry, shade, shading_models
 from tests.quadrature import FloatArray, paper_psi, sphere_exitance
 from tests.surfaces import sphere
 
 SAMPLES = (16, 32, 64, 128)
 RATIOS = (2, 5, 10, 20, 50)
+ENERGY_RATIOS = (1, 2, 5, 10, 20)
 MODELS: dict[str, tuple[str, dict[str, Any]]] = {
     "lambert, <F_t>": ("lambert", {"fresnel": "mean"}),
     "lambert, F_t(N.w)": ("lambert", {"fresnel": "directional"}),
-    "wrap": ("wrap", {}),
-    "kolchin2007-simplified": ("kolchin2007-simplified", {}),
-    "kolchin2007": ("kolchin2007", {}),
-    "curvature-lut": ("curvature-lut", {}),
+    "first order, F_t inside": ("curvature-lut", {"hinges": 16, "area": "flat"}),
+    **{
+        name: (name, {})
+        for name in shading_models()
+        if name != "lambert" and model_registry.get(name).local
+    },
 }
 
 
@@ -62,25 +68,50 @@ def psi_error(name: str, samples: int) -> float:
     return float(max(errors))
 
 
-def model_errors(
-    radius_ratio: float, nodes: int = 64, name: str = "skin1", channel: int = 0
-) -> dict[str, float]:
-    """Return each model's relative L2 error on a sphere of `radius_ratio` l_d, per cent."""
+def on_sphere(
+    radius_ratio: float, nodes: int, name: str, channel: int
+) -> tuple[FloatArray, FloatArray, dict[str, FloatArray]]:
+    """Return shares of the area, the truth there, and what each model gives."""
     constants = optics(material(name))[channel]
     radius = radius_ratio / constants.beta
     x, weights = np.polynomial.legendre.leggauss(nodes)
     # Equal steps of the cosine are equal areas; the exitance bends at the terminator.
     cosines = np.concatenate((0.5 * (x - 1.0), 0.5 * (x + 1.0)))
-    weights = np.concatenate((weights, weights))
+    shares = 0.25 * np.concatenate((weights, weights))
     truth = sphere_exitance(cosines, radius, constants)
     surface = sphere(cosines, radius * float(material(name).mean_free_path[channel]))
     light = DirectionalLight((0.0, 0.0, 1.0))
-    errors = {}
-    for label, (model, parameters) in MODELS.items():
-        shaded = shade(*surface, name, [light], model, **parameters)[:, channel]
-        norm = np.sum(weights * (shaded - truth) ** 2) / np.sum(weights * truth**2)
-        errors[label] = 100.0 * float(np.sqrt(norm))
-    return errors
+    shaded = {
+        label: shade(*surface, name, [light], model, **parameters)[:, channel]
+        for label, (model, parameters) in MODELS.items()
+    }
+    return shares, truth, shaded
+
+
+def model_errors(
+    radius_ratio: float, nodes: int = 64, name: str = "skin1", channel: int = 0
+) -> dict[str, float]:
+    """Return each model's relative L2 error on a sphere of `radius_ratio` l_d, per cent."""
+    shares, truth, shaded = on_sphere(radius_ratio, nodes, name, channel)
+    scale = np.sum(shares * truth**2)
+    return {
+        label: 100.0 * float(np.sqrt(np.sum(shares * (value - truth) ** 2) / scale))
+        for label, value in shaded.items()
+    }
+
+
+def model_energies(
+    radius_ratio: float, nodes: int = 64, name: str = "skin1", channel: int = 0
+) -> dict[str, float]:
+    """Return what leaves a sphere of `radius_ratio` l_d by each model, over R_d <F_t> of the light.
+
+    The last entry is the dipole's own.
+    """
+    shares, truth, shaded = on_sphere(radius_ratio, nodes, name, channel)
+    table = bake(name)
+    entering = 0.25 * table.total[channel] * mean_transmittance(table.eta)  # mean of max(N.w, 0)
+    shaded["dipole on the sphere"] = truth
+    return {label: float(np.sum(shares * value) / entering) for label, value in shaded.items()}
 
 
 def bake_milliseconds(name: str) -> float:
@@ -112,9 +143,11 @@ def main() -> None:
     tables = {name: {n: psi_error(name, n) for n in SAMPLES} for name in materials()}
     times = {name: bake_milliseconds(name) for name in materials()}
     models = {ratio: model_errors(ratio) for ratio in RATIOS}
+    energies = {ratio: model_energies(ratio) for ratio in ENERGY_RATIOS}
     plane = plane_error("skin1", 512)
     if options.json:
-        print(json.dumps({"psi": tables, "bake_ms": times, "models": models, "plane": plane}))
+        found = {"psi": tables, "bake_ms": times, "models": models, "energy": energies}
+        print(json.dumps({**found, "plane": plane}))
         return
     print("error of psi / R_d by samples, and RGB bake of 64")
     print(f"{'':12}" + "".join(f"{n:>10}" for n in SAMPLES) + f"{'ms':>8}")
@@ -122,9 +155,16 @@ def main() -> None:
         print(f"{name:12}" + "".join(f"{row[n]:10.1e}" for n in SAMPLES) + f"{times[name]:8.2f}")
     print(f"(a, b) table, 512 x 512, bilinear, skin1: {plane:.1e}")
     print("relative L2 error on the sphere, %, by radius / l_d (skin1, red)")
-    print(f"{'':24}" + "".join(f"{ratio:>8}" for ratio in RATIOS))
-    for label in MODELS:
-        print(f"{label:24}" + "".join(f"{models[ratio][label]:8.2f}" for ratio in RATIOS))
+    show(models, 3)
+    print("light that leaves the sphere / R_d <F_t>, by radius / l_d (skin1, red)")
+    show(energies, 4)
+
+
+def show(columns: dict[int, dict[str, float]], digits: int) -> None:
+    """Print a row for each model."""
+    print(f"{'':24}" + "".join(f"{ratio:>9}" for ratio in columns))
+    for label in next(iter(columns.values())):
+        print(f"{label:24}" + "".join(f"{row[label]:9.{digits}f}" for row in columns.values()))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 """Speed and memory of `shade`: python -m tests.bench.shading_speed [--size N] [--json].
 
-Times are the best of several runs in one process, as nanoseconds per vertex and as ratios to plain
-NumPy of the same lights. Memory is taken in a child process, from the resident size before the
-call to the peak after it, less the output: an upper bound, because the peak may be older. POSIX.
+Times are the best of several runs in one process: nanoseconds per vertex, and per vertex, light and
+channel, of the compiled models and of plain NumPy; ratios are between runs of this process. Models
+that are not local are left out: what they take depends on the mesh. Memory is taken in a child
+process, from the resident size before the call to the peak after it, less the output: an upper
+bound, because the peak may be older. POSIX.
 """
 
 import argparse
@@ -15,6 +17,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numba
 import numpy as np
@@ -23,7 +26,7 @@ import psutil  # type: ignore[import-untyped]
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.lights import ConeLight, DirectionalLight, Light, PointLight
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import shade, shading_models
+from lutcore.shading import model_registry, shade, shading_models
 from tests import numpy_shading
 from tests.surfaces import torus
 
@@ -35,6 +38,20 @@ LIGHTS: tuple[Light, ...] = (
     PointLight((-60.0, 20.0, 40.0), (3000.0, 3000.0, 4000.0)),
     ConeLight((0.0, 0.0, 90.0), (0.0, 0.0, -1.0), 2000.0, 25.0),
 )
+
+WITH_F_T = "lambert, F_t(N.w)"
+LOCAL = [name for name in shading_models() if model_registry.get(name).local]
+MODELS: dict[str, tuple[str, dict[str, Any]]] = {
+    **{name: (name, {}) for name in LOCAL},
+    WITH_F_T: ("lambert", {"fresnel": "directional"}),
+}
+PLAIN = {
+    "lambert": numpy_shading.lambert,
+    "wrap": numpy_shading.wrap,
+    "kolchin2007": numpy_shading.kolchin2007,
+    "curvature-lut": numpy_shading.curvature_lut,
+    "penner2011": numpy_shading.penner2011,
+}
 
 
 def best(call: Callable[[], object], runs: int) -> float:
@@ -51,23 +68,29 @@ def speeds(size: int, runs: int = 9) -> dict[str, object]:
     small = torus(100)
     count = len(mesh.vertices)
     per_vertex = {}
-    for name in shading_models():
-        shade(*small, MATERIAL, LIGHTS, name)
-        taken = best(partial(shade, mesh, curvatures, MATERIAL, LIGHTS, name), runs)
-        per_vertex[name] = 1e9 * taken / count
+    for label, (name, parameters) in MODELS.items():
+        shade(*small, MATERIAL, LIGHTS, name, **parameters)
+        call = partial(shade, mesh, curvatures, MATERIAL, LIGHTS, name, **parameters)
+        per_vertex[label] = 1e9 * best(call, runs) / count
     arguments = (mesh, curvatures, MATERIAL, LIGHTS)
-    lambert = 1e9 * best(lambda: numpy_shading.lambert(*arguments), runs) / count
-    same = 1e9 * best(lambda: numpy_shading.curvature_lut(*arguments), 2) / count
+    plain = {
+        label: 1e9 * best(partial(function, *arguments), 2) / count
+        for label, function in PLAIN.items()
+    }
+    each = 3 * len(LIGHTS)
     ours = per_vertex["curvature-lut"]
     return {
         "vertices": count,
         "lights": len(LIGHTS),
         "threads": numba.get_num_threads(),
         "ns_per_vertex": per_vertex,
-        "numpy_lambert_ns_per_vertex": lambert,
-        "numpy_curvature_lut_ns_per_vertex": same,
-        "curvature_lut_to_numpy_lambert": ours / lambert,
-        "numpy_curvature_lut_to_compiled": same / ours,
+        "ns_per_vertex_light_channel": {k: v / each for k, v in per_vertex.items()},
+        "numpy_ns_per_vertex_light_channel": {k: v / each for k, v in plain.items()},
+        "numpy_lambert_ns_per_vertex": plain["lambert"],
+        "numpy_curvature_lut_ns_per_vertex": plain["curvature-lut"],
+        "curvature_lut_to_lambert_with_F_t": ours / per_vertex[WITH_F_T],
+        "curvature_lut_to_numpy_lambert": ours / plain["lambert"],
+        "numpy_curvature_lut_to_compiled": plain["curvature-lut"] / ours,
     }
 
 
@@ -112,9 +135,7 @@ def main() -> None:
         print(_child(*options.child))
         return
     result = speeds(options.size)
-    result["peak_bytes_per_vertex"] = {
-        name: memory(options.size, name) for name in shading_models()
-    }
+    result["peak_bytes_per_vertex"] = {name: memory(options.size, name) for name in LOCAL}
     if options.json:
         print(json.dumps(result))
         return

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from lutcore.arrays import FloatArray
+from lutcore.baking import bake
+from lutcore.diffusion import diffusion_profile
 from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight
+from lutcore.progress import silent
 from lutcore.shading import (
     ShadingInputs,
     ShadingModel,
@@ -87,6 +90,38 @@ def test_a_vertex_without_a_normal_is_dark_whatever_the_model_says(spy: str) -> 
     np.testing.assert_array_equal(np.flatnonzero(shaded.sum(axis=1) == 0.0), [3, 77])
 
 
+def test_a_model_is_told_of_the_mesh_the_medium_and_the_progress(spy: str) -> None:
+    mesh, curvatures = torus(200)
+    profile = diffusion_profile("jensen2001")
+    shade(mesh, curvatures, "skin1", [LIGHT], spy, 2.0, profile=profile, progress=silent)
+    np.testing.assert_array_equal(SEEN[0].faces, mesh.faces)
+    assert SEEN[0].mm_per_unit == 2.0
+    assert SEEN[0].profile is profile
+    assert SEEN[0].progress is silent
+    assert SEEN[0].table is bake("skin1", profile=profile)
+
+
+def test_a_local_model_shades_each_light_alone_where_shadows_are_cast(spy: str) -> None:
+    mesh, curvatures = torus(200)
+    shares = np.linspace(0.0, 1.0, 2 * len(mesh.vertices)).reshape(2, -1)
+    shaded = shade(mesh, curvatures, "skin1", [LIGHT, LIGHT], spy, visibility=shares)
+    assert [len(seen.lights) for seen in SEEN] == [1, 1]
+    assert all(seen.visibility is None for seen in SEEN)
+    np.testing.assert_allclose(shaded, np.repeat(shares.sum(axis=0)[:, None], 3, axis=1))
+
+
+def test_a_model_that_is_not_local_gets_all_lights_and_their_visibility(
+    spy: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Spy, "local", False)
+    mesh, curvatures = torus(200)
+    shares = np.zeros((2, len(mesh.vertices)))
+    shade(mesh, curvatures, "skin1", [LIGHT, LIGHT], spy, visibility=shares)
+    assert len(SEEN) == 1
+    assert len(SEEN[0].lights) == 2
+    np.testing.assert_array_equal(SEEN[0].visibility, shares)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -102,6 +137,10 @@ def test_a_vertex_without_a_normal_is_dark_whatever_the_model_says(spy: str) -> 
         ({"lights": ["sun"]}, "light"),
         ({"lights": LIGHT}, "sequence"),
         ({"normals": np.zeros((3, 3))}, "normals"),
+        ({"profile": "jensen2002"}, "jensen2001"),
+        ({"visibility": np.ones((1, 7))}, "visibility"),
+        ({"visibility": np.full((1, 100), 1.5)}, "visibility"),
+        ({"visibility": np.full((1, 100), np.nan)}, "visibility"),
     ],
 )
 def test_bad_arguments_are_refused(arguments: dict[str, Any], message: str) -> None:

@@ -12,11 +12,31 @@ from lutcore.fresnel import hinges, mean_transmittance, transmittance
 from lutcore.lights import ConeLight, DirectionalLight, Light, PointLight
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import shade, shading_models
-from tests.surfaces import sphere, torus
+from lutcore.shading import model_registry, shade, shading_models
+from tests.surfaces import bent, sphere, torus
 
 FloatArray = NDArray[np.float64]
 MODELS = shading_models()
+LOCAL = [name for name in MODELS if model_registry.get(name).local]
+# What a flat surface lets in: F_t(N.w) within the error given, and <F_t> for the other models.
+DIRECTIONAL = {"curvature-lut": hinges(1.3, 4).error, "monge-patch": 0.0, "sphere-table": 0.0}
+# Models whose flat surface is not Lambert: by design, or because its albedo depends on N.w, which
+# a test of its own checks.
+NOT_LAMBERT = ("wrap", "bredow2002", "curvature-lut-physical")
+# Models that do not say that they never give out more than they take in, and do: blurred around a
+# ring instead of over a surface, or of first order in curvature, or wrapped.
+CREATING = ("kolchin2007", "kolchin2007-simplified", "kubo2010", "penner2011", "wrap")
+# Models that a more curved surface leaves monotone in the light's height: blurs and exact integrals
+# are, a glow that is added to Lambert is not.
+MONOTONE = (
+    "bredow2002",
+    "kubo2010",
+    "lambert",
+    "monge-patch",
+    "penner2011",
+    "sphere-table",
+    "wrap",
+)
 LIGHTS: list[Light] = [
     DirectionalLight((1.0, 0.3, 0.5), (1.0, 0.9, 0.8)),
     PointLight((-60.0, 20.0, 40.0), (3000.0, 2000.0, 4000.0)),
@@ -29,6 +49,11 @@ ABOVE = DirectionalLight((0.0, 0.0, 1.0))
 
 def on_torus(model: str, lights: list[Light], substance: Material | str = "skin1") -> FloatArray:
     return shade(*torus(900), substance, lights, model)
+
+
+def slack(model: str) -> float:
+    """Return how far sums may be apart: what clusters stand for depends on all the light."""
+    return ROUNDING if model in LOCAL else 0.005
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -51,7 +76,7 @@ def test_dark_without_light(model: str) -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_lights_add_and_scale(model: str) -> None:
     apart = np.sum([on_torus(model, [light]) for light in LIGHTS], axis=0)
-    np.testing.assert_allclose(on_torus(model, LIGHTS), apart, rtol=0.0, atol=ROUNDING)
+    np.testing.assert_allclose(on_torus(model, LIGHTS), apart, rtol=0.0, atol=slack(model))
     dim = PointLight((-60.0, 20.0, 40.0), (3000.0, 2000.0, 4000.0))
     bright = PointLight((-60.0, 20.0, 40.0), (6000.0, 4000.0, 8000.0))
     np.testing.assert_allclose(on_torus(model, [bright]), 2.0 * on_torus(model, [dim]))
@@ -66,10 +91,11 @@ def test_channels_do_not_mix(model: str) -> None:
             "one channel", (skin.scattering[channel],) * 3, (skin.absorption[channel],) * 3, 1.3
         )
         alone = on_torus(model, LIGHTS, grey)
-        np.testing.assert_array_equal(alone[:, channel], together[:, channel])
+        close = slack(model) if model not in LOCAL else 0.0
+        np.testing.assert_allclose(alone[:, channel], together[:, channel], rtol=0.0, atol=close)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_rotating_everything_changes_nothing(model: str) -> None:
     from scipy.spatial.transform import Rotation
 
@@ -86,17 +112,13 @@ def test_rotating_everything_changes_nothing(model: str) -> None:
     np.testing.assert_allclose(again, on_torus(model, LIGHTS[:2]), rtol=0.0, atol=ROUNDING)
 
 
-@pytest.mark.parametrize("model", [name for name in MODELS if name != "wrap"])
+@pytest.mark.parametrize("model", [name for name in LOCAL if name not in NOT_LAMBERT])
 def test_a_large_radius_is_lambert(model: str) -> None:
     cosines = np.linspace(-1.0, 1.0, 201)
     reflectance = bake("skin1").total
     lit = np.maximum(cosines, 0.0)
-    if model == "curvature-lut":
-        # Fresnel inside: Lambert x F_t(N.w), within the error of the hinges.
-        flat, slack = lit * transmittance(lit, 1.3), hinges(1.3, 4).error
-    else:
-        # Fresnel outside: Lambert x <F_t>.
-        flat, slack = lit * mean_transmittance(1.3), 0.0
+    let_in = transmittance(lit, 1.3) if model in DIRECTIONAL else mean_transmittance(1.3)
+    flat, slack = lit * let_in, DIRECTIONAL.get(model, 0.0)
     for radius in (1e6, np.inf):
         shaded = shade(*sphere(cosines, radius), "skin1", [ABOVE], model)
         # First order in curvature: the glow at the terminator is psi(0) l_u/radius < 1.3/radius.
@@ -104,7 +126,7 @@ def test_a_large_radius_is_lambert(model: str) -> None:
         assert difference <= slack + 1.3 / radius + ROUNDING
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_directions_do_not_matter_at_an_umbilic(model: str) -> None:
     cosines = np.linspace(-1.0, 1.0, 101)
     mesh, curvatures = sphere(cosines, 5.0)
@@ -123,7 +145,7 @@ def test_directions_do_not_matter_at_an_umbilic(model: str) -> None:
     )
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 @pytest.mark.parametrize("radius", [5.0, 50.0, np.inf])
 def test_a_higher_light_never_darkens(model: str, radius: float) -> None:
     cosines = np.cos(np.linspace(np.pi, 0.0, 721))
@@ -132,7 +154,7 @@ def test_a_higher_light_never_darkens(model: str, radius: float) -> None:
     assert (np.diff(shaded, axis=0) >= -1e-6).all()
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_concave_is_flat(model: str) -> None:
     cosines = np.linspace(-1.0, 1.0, 101)
     mesh, curvatures = sphere(cosines, 5.0)
@@ -143,7 +165,7 @@ def test_concave_is_flat(model: str) -> None:
     )
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_millimetres_count_not_units(model: str) -> None:
     # The same body, measured in units of 1 mm and of 2.5 mm.
     mesh, curvatures = torus(900)
@@ -161,7 +183,7 @@ def test_millimetres_count_not_units(model: str) -> None:
     )
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_vertices_without_normal_or_at_the_light_are_dark(model: str) -> None:
     points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
     normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
@@ -188,7 +210,7 @@ def test_the_number_of_threads_changes_no_bit(model: str) -> None:
         numba.set_num_threads(before)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", LOCAL)
 def test_every_vertex_is_on_its_own(model: str) -> None:
     # More than one block, and a last block that is not full.
     mesh, curvatures = torus(900)
@@ -202,8 +224,81 @@ def test_every_vertex_is_on_its_own(model: str) -> None:
     np.testing.assert_array_equal(alone, on_torus(model, LIGHTS)[part])
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_enormous_curvature_stays_finite(model: str) -> None:
+@pytest.mark.parametrize("model", LOCAL)
+def test_cast_shadows_multiply_each_light(model: str) -> None:
+    shares = np.random.default_rng(2).uniform(0.0, 1.0, (len(LIGHTS), 900))
+    shaded = shade(*torus(900), "skin1", LIGHTS, model, visibility=shares)
+    alone = [on_torus(model, [light]) for light in LIGHTS]
+    np.testing.assert_allclose(
+        shaded, np.einsum("ln,lnc->nc", shares, alone), rtol=0.0, atol=ROUNDING
+    )
+
+
+@pytest.mark.parametrize("model", LOCAL)
+def test_enormous_curvature_stays_finite_and_not_negative(model: str) -> None:
     cosines = np.linspace(-1.0, 1.0, 101)
-    for radius in (1e-3, 1e-12):
-        assert np.isfinite(shade(*sphere(cosines, radius), "skin1", [ABOVE], model)).all()
+    for radius in (1.0, 1e-3, 1e-12):
+        for name in ("skin1", "spectralon"):
+            shaded = shade(*sphere(cosines, radius), name, [ABOVE], model)
+            assert np.isfinite(shaded).all()
+            assert (shaded >= 0.0).all()
+
+
+def leaving(model: str, name: str) -> float:
+    """Return the largest share of a beam that leaves a sphere of .02 to 300 l_u again."""
+    nodes, weights = np.polynomial.legendre.leggauss(100)
+    cosines = np.concatenate((0.5 * (nodes - 1.0), 0.5 * (nodes + 1.0)))
+    length = float(material(name).mean_free_path[0])
+    shares = [
+        # int M dA/(pi radius^2), dA = 2 pi radius^2 dcos
+        np.concatenate((weights, weights)) @ shade(*sphere(cosines, r), name, [ABOVE], model)
+        for r in length * np.geomspace(0.02, 300.0, 15)
+    ]
+    return float(np.max(shares))
+
+
+@pytest.mark.parametrize("model", [name for name in LOCAL if name not in CREATING])
+@pytest.mark.parametrize("name", ["skin1", "marble", "spectralon"])
+def test_no_more_light_leaves_a_sphere_than_falls_on_it(model: str, name: str) -> None:
+    assert leaving(model, name) <= 1.0
+
+
+@pytest.mark.parametrize("model", CREATING)
+def test_models_that_claim_no_energy_balance_have_none(model: str) -> None:
+    assert leaving(model, "spectralon") > 1.0
+
+
+@pytest.mark.parametrize("model", MONOTONE)
+@pytest.mark.parametrize("radius", [0.1, 0.5, 2.0])
+def test_a_higher_light_never_darkens_a_strongly_curved_surface(model: str, radius: float) -> None:
+    cosines = np.cos(np.linspace(np.pi, 0.0, 361))
+    shaded = shade(*sphere(cosines, radius), "skin1", [ABOVE], model)
+    # Tables are within 5e-6 of what is monotone, with knots at least four steps apart.
+    assert (np.diff(shaded, axis=0) >= -1e-6).all()
+
+
+@pytest.mark.parametrize("model", LOCAL)
+@pytest.mark.parametrize("height", [-0.3, 0.0, 0.02, 0.7])
+def test_no_seam_in_curvature(model: str, height: float) -> None:
+    light: list[Light] = [DirectionalLight((0.6, 0.8, height))]
+    # Across 0, where concave turns flat and flat convex: 1e-9 of a curvature near 1 is nothing.
+    step = np.array([-1e-9, 0.0, 1e-9])
+    for other in (-1.0, 0.0, 0.3):
+        shaded = shade(*bent(step, np.full(3, other)), "skin1", light, model)
+        assert np.abs(np.diff(shaded, axis=0)).max() < 1e-7
+    # Across every limit, on a sphere and on a body whose k2 passes k1: a step of .1 % changes the
+    # first order, which is the steepest, by .1 % of the glow.
+    k = np.geomspace(1e-5, 1e3, 18_500)
+    for k1 in (k, np.full(len(k), 0.2)):
+        shaded = shade(*bent(k1, k), "skin1", light, model)
+        assert (np.abs(np.diff(shaded, axis=0)) <= 2e-3 * (shaded[1:] + 0.5)).all()
+
+
+@pytest.mark.parametrize("model", LOCAL)
+@pytest.mark.parametrize("radius", [0.05, 1.0, 30.0, np.inf])
+def test_no_seam_in_the_height_of_light(model: str, radius: float) -> None:
+    cosines = np.cos(np.linspace(np.pi, 0.0, 18_001))
+    shaded = shade(*sphere(cosines, radius), "skin1", [ABOVE], model)
+    # .01 degrees: sharpest is c F_t(c), whose slope is 1.1 at most; a glow adds less than itself.
+    bound = np.radians(0.01) * 2.0 * np.maximum(shaded.max(axis=0), 1.0)
+    assert (np.abs(np.diff(shaded, axis=0)) <= bound).all()

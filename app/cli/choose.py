@@ -1,0 +1,202 @@
+"""Say which shading model is enough for a scene, what it costs, and why.
+
+Predicts the error of each model from the mesh's curvature, the material and the lights, without
+shading anything, measures once what each costs on this machine, and takes the cheapest that is
+within the tolerance. The truth is the diffusion profile gathered over the surface itself.
+--model auto of the other commands does the same.
+"""
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli import options
+from app.cli.console import answer, note, progress, table
+from lutcore.parameters import Number
+
+if TYPE_CHECKING:
+    from app.choosing import Needs
+    from app.pipeline import Pipeline
+    from app.session import Session
+    from lutcore.choice import Rung
+
+_TOLERANCE = Number(1e-4, 100.0, "", "Error that is good enough, in the metric's unit.", False)
+
+
+def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
+    """Declare the command's flags.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    words : list of str
+        The command's arguments.
+    """
+    from lutcore.tolerance import DEFAULTS, METRICS
+
+    parser.add_argument("mesh", nargs="?", metavar="MESH", help="mesh file, or sample:NAME")
+    parser.add_argument("--session", type=Path, metavar="FILE", help="start from a session file")
+    parser.set_defaults(own_mesh=False)
+    group = parser.add_argument_group("how good")
+    values = ", ".join(f"{value:g} for {metric}" for metric, value in DEFAULTS.items())
+    group.add_argument("--tolerance", metavar="T", help=f"{_TOLERANCE.doc} ({values})")
+    group.add_argument(
+        "--metric",
+        choices=METRICS,
+        default=METRICS[0],
+        help="relative: 99 %% of vertices, in R_d and the largest irradiance; CIEDE2000 over the "
+        "vertices: mean or 99th percentile (relative)",
+    )
+    group.add_argument("--again", action="store_true", help="measure the models' costs again")
+    options.add_shading(parser, words, with_model=False)
+    options.add_curvature(parser, words)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of the command.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    from app.camera import axes, camera_of
+    from app.choosing import needs
+    from app.pipeline import Pipeline
+    from lutcore.tolerance import DEFAULTS, Tolerance
+
+    start = time.perf_counter()
+    given = arguments.tolerance
+    value = DEFAULTS[arguments.metric] if given is None else _TOLERANCE.check("tolerance", given)
+    session = options.session_from(arguments, view="shade")
+    pipeline = Pipeline(progress(arguments))
+    subject = pipeline.subject(session)
+    size = pipeline.mm_per_unit(session)
+    warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
+    if session.mm_per_unit is None and subject.sample is None:
+        warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
+    for warning in warnings:
+        note(arguments, f"{session.mesh}: {warning}")
+    tolerance = Tolerance(float(value), arguments.metric)
+    camera = camera_of(session.camera, subject, 1.0)
+    found = needs(session, pipeline, axes(camera), tolerance, arguments.again)
+    result = _plain(session, pipeline, found) | {
+        "warnings": warnings,
+        "seconds": round(time.perf_counter() - start, 3),
+    }
+    answer(arguments, result, _text(session, pipeline, found))
+    return 0
+
+
+def _plain(session: "Session", pipeline: "Pipeline", found: "Needs") -> dict[str, object]:
+    from app.costs import machine
+
+    subject, choice = pipeline.subject(session), found.choice
+    chosen = choice.chosen.candidate
+    return {
+        "mesh": session.mesh,
+        "sha256": subject.loaded.digest,
+        "vertices": len(subject.mesh.vertices),
+        "material": pipeline.material(session).name,
+        "mm_per_unit": pipeline.mm_per_unit(session),
+        "lights": len(session.lights),
+        "tolerance": choice.tolerance.value,
+        "metric": choice.tolerance.metric,
+        "ladder": [_rung(rung) for rung in choice.rungs],
+        "choice": {
+            "model": chosen.name,
+            "parameters": chosen.parameters,
+            "blended_with": choice.cheaper.candidate.label if choice.cheaper else None,
+            "milliseconds": choice.milliseconds,
+            "adequate": choice.chosen.adequate,
+            "local": chosen.model.local,
+            "reason": choice.sentence,
+            "local_suffices_at_times_the_size": choice.enough,
+        },
+        "table_samples": found.samples,
+        "shadows": None
+        if found.shadows is None
+        else {
+            "needed": found.shadows.needed,
+            "share": found.shadows.share,
+            "change": found.shadows.change,
+        },
+        "scale": found.scale,
+        "glow": found.glow,
+        "radius_of_curvature": found.tight,
+        "machine": machine(),
+    }
+
+
+def _rung(rung: "Rung") -> dict[str, object]:
+    return {
+        "model": rung.candidate.name,
+        "parameters": rung.candidate.parameters,
+        "predicted_error_median": rung.median,
+        "predicted_error_p99": rung.p99,
+        "score": rung.score,
+        "share": rung.share,
+        "ns_per_vertex_and_light": rung.nanoseconds,
+        "milliseconds": rung.milliseconds,
+        "adequate": rung.adequate,
+    }
+
+
+def _text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
+    choice = found.choice
+    metric = choice.tolerance.metric
+    head = ["model", "error: median", "99th perc.", metric, "suffices on", "ns", "ms", ""]
+    if metric == "relative":
+        head.remove(metric)
+    rows = [head]
+    for rung in choice.rungs:
+        known = rung.median == rung.median
+        cells = [rung.candidate.label]
+        cells += [f"{rung.median:.2g}", f"{rung.p99:.2g}"] if known else ["-", "-"]
+        if metric != "relative":
+            cells.append(f"{rung.score:.2g}" if known else "-")
+        cells.append(f"{100.0 * rung.share:.1f} %" if known else "-")
+        cells += [f"{rung.nanoseconds:.0f}", f"{rung.milliseconds:.2f}"]
+        cells.append("enough" if rung.adequate else ("" if known else "error not predicted"))
+        rows.append(cells)
+    size = pipeline.mm_per_unit(session)
+    lines = [
+        f"{pipeline.material(session).name}, {size:g} mm per unit, {len(session.lights)} lights, "
+        f"tolerance {choice.tolerance.value:g} ({metric}); errors in R_d and the largest "
+        "irradiance, ns per vertex and light",
+        "",
+        table(rows),
+        "",
+        f"choice: {choice.sentence}.",
+        f"costs {choice.milliseconds:.3g} ms for this mesh and its lights",
+        f"table: {found.samples} samples of psi are enough",
+    ]
+    if found.shadows is not None:
+        need = "needed" if found.shadows.needed else "not needed"
+        change = f"{100.0 * found.shadows.change:.1f} % of the light (root mean square)"
+        lines.append(f"shadows: {need}; they change {change}")
+    if found.scale is not None:
+        finer = f"light carries an edge by {found.glow:.3g}"
+        lines.append(f"scale of curvature: {found.scale:.3g} mesh units; {finer}")
+    return "\n".join([*lines, *_physics(found)])
+
+
+def _physics(found: "Needs") -> list[str]:
+    """Say where the truth itself, the profile over the surface, is no longer light transport."""
+    ten = found.tight["below_10_l_d"]
+    if ten < 0.01:
+        return []
+    return [
+        f"against a random walk: {100.0 * ten:.0f} % of the vertices have a radius of curvature "
+        f"below 10 diffusion lengths ({100.0 * found.tight['below_5_l_d']:.0f} % below 5), where "
+        "the profile itself is off by 10 % and more, gathered or not; curvature-lut-physical is "
+        "made for them"
+    ]

@@ -1,0 +1,1 @@
+"""Where shading models fail: the report, its picture, its page, its files."""

@@ -1,0 +1,169 @@
+"""A surface as light sees it that spreads below it: without the bumps that it blurs.
+
+Each channel has its own normals and curvature, filtered by its own diffusion profile, all from one
+recurrence. The filters are those of `lutcore.response`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numba import prange
+
+from lutcore.arrangement import arranged
+from lutcore.arrays import FloatArray, finite
+from lutcore.baking import glowing, resolved
+from lutcore.borrowing import borrow
+from lutcore.compiled import compiled
+from lutcore.cosmoothing import Surface, shape_operators, surface
+from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
+from lutcore.errors import ParameterError
+from lutcore.estimation import sized_to_one
+from lutcore.lowpass import SingleArray, filtered, series_of
+from lutcore.materials import Material
+from lutcore.mesh import TriangleMesh
+from lutcore.progress import Progress, part, silent, tell
+from lutcore.response import response
+from lutcore.tensors import in_space
+from lutcore.weld import weld
+
+# Light that spreads farther than this share of the mesh, root mean square along an axis, is taken
+# to spread so far: no local model holds there, and the work grows with it.
+_WIDEST = 0.1
+# How far a filter may be off. Normals and positions go through the same one, so that what is off
+# is hardly more than the filter's length.
+_TOLERANCE = 3e-3
+# A star that smoothing has closed to less than this share of its extent tells nothing more.
+_CLOSED = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Detail:
+    """What the light of each channel sees of a surface.
+
+    Parameters
+    ----------
+    normals : ndarray, shape=(3, n, 3)
+        Outward unit normals by channel; zero where a vertex has no face.
+    shape : ndarray, shape=(3, n, 6)
+        Convex part S+ of the shape operator by channel, 1/mm, as `ShadingInputs.shape`.
+    bare : ndarray, shape=(n, 3)
+        Outward unit normals with all detail, means over the faces around each vertex by area, for
+        models that blur it themselves: those that are not local.
+    widths : ndarray, shape=(3,)
+        Root mean square distance along an axis that light spreads, mesh units: detail finer than
+        this fades.
+    """
+
+    normals: FloatArray
+    shape: FloatArray
+    bare: FloatArray
+    widths: FloatArray
+
+
+def detail_seen(
+    mesh: TriangleMesh,
+    material: Material | str,
+    mm_per_unit: float = 1.0,
+    *,
+    profile: DiffusionProfile | str = "jensen2001",
+    progress: Progress = silent,
+) -> Detail:
+    """Return a mesh as the light of a material sees it, to be given to `shade`.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface, n vertices.
+    material : Material or str
+        A material, or the name of a built-in one.
+    mm_per_unit : float
+        Millimetres in one mesh unit, above 0.
+    profile : DiffusionProfile or str
+        How light spreads under a flat surface: a diffusion profile, or the name of one.
+    progress : callable
+        Told where the work stands; see `lutcore.progress`.
+
+    Returns
+    -------
+    Detail
+        Normals and curvature by channel, for that material, profile and size alone.
+
+    Raises
+    ------
+    ParameterError
+        If a name is unknown or a value out of range.
+    CancelledError
+        If `progress` asked to stop.
+    """
+    size = float(finite("mm_per_unit", mm_per_unit, ()))
+    if size <= 0.0:
+        raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
+    substance, spreading = resolved(material), diffusion_profile(profile)
+    tell(progress, 0.0, "joining vertices")
+    welded = arranged(weld(mesh))
+    lengths = substance.mean_free_path / size
+    constants = [glowing(channel) for channel in optics(substance)]
+    widths = lengths * [np.sqrt(0.5 * spreading.mean_square(channel)) for channel in constants]
+    count = len(mesh.vertices)
+    normals, shape = np.zeros((3, count, 3)), np.zeros((3, count, 6))
+    if welded.mesh is None:
+        return Detail(normals, shape, np.zeros((count, 3)), widths)
+    shares = np.minimum(1.0, _WIDEST * welded.mesh.diagonal / widths)
+    sized, unit = sized_to_one(welded.mesh)
+    on = surface(sized, part(progress, 0.0, 0.3))
+    filters = [
+        series_of(passing, on.operator.bound, _TOLERANCE)
+        for channel, length in zip(constants, shares * lengths / unit, strict=True)
+        for passing in _passing(spreading, channel, length)
+    ]
+    change = filtered(on.operator, on.fields, filters, part(progress, 0.3, 0.9))
+    for channel in range(3):
+        tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
+        facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
+        normals[channel] = welded.spread(facing, 0.0)
+        shape[channel] = welded.spread(_convex_part(facing, tensors, 1.0 / (unit * size)), 0.0)
+    bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
+    return Detail(normals, shape, bare, shares * widths)
+
+
+def _passing(
+    profile: DiffusionProfile, channel: Optics, length: float
+) -> list[Callable[[FloatArray], FloatArray]]:
+    """Return the responses of normals and curvature to eigenvalues q^2, for l_u of a length."""
+    known = response(profile, channel)
+
+    def of(values: FloatArray) -> Callable[[FloatArray], FloatArray]:
+        return lambda square: np.interp(length * np.sqrt(square), known.wavenumber, values)
+
+    return [of(known.normals), of(known.curvature)]
+
+
+def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]:
+    """Return the normals after the first change, and the shape operators after the second."""
+    links = (on.operator.start, on.operator.neighbour)
+    normals, every, stretch = shape_operators(*links, on.fields, change, 0, on.spacing)
+    tensors = every[:, 2].astype(np.float64)
+    # Half a star, or one that has closed, tells less than its neighbours.
+    weak = np.flatnonzero(on.operator.rim | (stretch[:, 2] < _CLOSED)).astype(np.int32)
+    told = np.ones(len(weak), np.bool_)
+    borrow(*links, normals, weak, told, tensors, np.ones(len(tensors)))
+    return normals, tensors
+
+
+@compiled(parallel=True)
+def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> FloatArray:
+    """Return S+ from tensors in the `tangent_frame` of the normals."""
+    shape = np.empty((len(normals), 6))
+    for i in prange(len(normals)):
+        xx, xy, yy = tensors[i, 0], tensors[i, 1], tensors[i, 2]
+        middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
+        high, low = max(middle + radius, 0.0), max(middle - radius, 0.0)
+        # S+ = low 1 + (high - low)/(2 radius) (S - (middle - radius) 1)
+        turned = 0.5 * (high - low) / radius if radius > 0.0 else 0.0
+        even = low - turned * (middle - radius)
+        convex = np.array([even + turned * xx, turned * xy, even + turned * yy])
+        sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], per_mm * convex)
+        shape[i, 0], shape[i, 1], shape[i, 2] = sxx, syy, szz
+        shape[i, 3], shape[i, 4], shape[i, 5] = sxy, syz, sxz
+    return shape

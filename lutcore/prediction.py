@@ -1,0 +1,294 @@
+"""How wrong a local shading model will be at a vertex, before it is run.
+
+The truth is the diffusion profile integrated over the true surface, with F_t inside. A model says
+in `Knowledge` what of it it has right; the rest, term by term (`lutcore.error_terms`), is its
+error. What no local model can know is the same for all.
+"""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lutcore.arrays import FloatArray
+from lutcore.error_terms import Known, Spread, Where, around, errors, irradiances
+from lutcore.fresnel import hinges, mean_transmittance, transmittance
+from lutcore.lut import PsiTable
+
+if TYPE_CHECKING:
+    from lutcore.curvature import PrincipalCurvatures
+    from lutcore.shading import ShadingInputs
+
+COSINES: FloatArray = np.linspace(-1.0, 1.0, 257)
+"""Cosines at which a model says what it gives on a flat surface."""
+
+BENDS = ("none", "mean", "rms", "tensor")
+"""See `Knowledge.bend`."""
+
+WEIGHTS = {
+    "first": 3.0,
+    "second": 1.2,
+    "anisotropy": 1.0,
+    "higher": 2.0,
+    "third": 2.2,
+    "concave": 5.0,
+    "facet": 0.09,
+    "noise": 1.0,
+    "base": 2e-4,
+    "rough": 1.0,
+    "tilt": 20.0,
+    "residue": 1.0,
+}
+"""By how much each term of `lutcore.error_terms` counts.
+
+From regression to the 95th percentile of the errors of all models on random shapes that no test and
+no table uses (``python -m tests.bench.prediction --tune 80``), rounded up to one set for all.
+"""
+
+_HINGES = 4
+_NEAR = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """What a model has right, and so how wrong it is.
+
+    Parameters
+    ----------
+    flat : ndarray, shape=(257,)
+        What it gives on a flat surface under light at `COSINES`, per R_d and unit irradiance.
+    bend : str
+        The curvature that its glow follows: ``none``, the ``mean``, the ``rms`` of the two, or the
+        ``tensor`` along the light. Concave curvature is taken as 0.
+    second : float
+        Share of X that it leaves out.
+    anisotropy : float
+        Share of X's part with (k1 - k2)^2 that it leaves out: models that know one curvature.
+    higher : float
+        How large its error beyond the second order is, against that of the first order.
+    residue : float
+        Its error in units of E2/(1 + E2) where the others have none, in the dark: of its tables.
+    """
+
+    flat: FloatArray
+    bend: str = "tensor"
+    second: float = 1.0
+    anisotropy: float = 0.0
+    higher: float = 1.0
+    residue: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What is known of a surface and its light before anything is shaded.
+
+    Parameters
+    ----------
+    points, normals : ndarray, shape=(n, 3)
+        Positions in mesh units and outward unit normals.
+    curvatures : ndarray, shape=(n, 2)
+        k1 and k2, signed, 1/mm.
+    directions : ndarray, shape=(n, 2, 3)
+        Their unit directions.
+    error : ndarray, shape=(n,)
+        One sigma of k1 and k2, 1/mm; 0 where it is not known.
+    slope : ndarray, shape=(n, 3)
+        Gradient of k1 + k2 along the surface, 1/mm^2.
+    facet : ndarray, shape=(n,)
+        Area of the mesh for each vertex, mm^2.
+    rough : ndarray, shape=(n,)
+        Mean over the faces at a vertex of 1 - cos of the angle between their normals and its own:
+        detail that the given normals do not have, and by how much it adds to the area.
+    tilt : ndarray, shape=(n,)
+        Error of the curvature times its scale, or the width of what light sees where the
+        normals are of that: that of the normal, rad.
+    radius : float
+        That of a ball of the same volume over area, mm; infinite for an open surface.
+    lights : ndarray, shape=(l, LIGHT_FIELDS)
+        See `lutcore.lights.pack`.
+    table : PsiTable
+        Of the material and the profile.
+    """
+
+    points: FloatArray
+    normals: FloatArray
+    curvatures: FloatArray
+    directions: FloatArray
+    error: FloatArray
+    slope: FloatArray
+    facet: FloatArray
+    rough: FloatArray
+    tilt: FloatArray
+    radius: float
+    lights: FloatArray
+    table: PsiTable
+
+    @classmethod
+    def of(cls, inputs: "ShadingInputs", curvatures: "PrincipalCurvatures") -> "Scene":
+        """Return the scene that is to be shaded.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            Of the whole mesh.
+        curvatures : PrincipalCurvatures
+            Of the same vertices, 1/mesh unit.
+
+        Returns
+        -------
+        Scene
+            One entry for each vertex.
+        """
+        size = inputs.mm_per_unit
+        slope, facet, rough, radius = around(
+            inputs.points, inputs.faces, inputs.normals, curvatures.k1 + curvatures.k2
+        )
+        error = np.where(np.isfinite(curvatures.error), curvatures.error, 0.0)
+        scale = curvatures.scale
+        if inputs.detail is not None:  # normals are then those of the light's own width
+            scale = np.minimum(scale, inputs.detail.widths.max())
+        return cls(
+            points=inputs.points,
+            normals=inputs.normals,
+            curvatures=np.stack([curvatures.k1, curvatures.k2], axis=1) / size,
+            directions=np.stack([curvatures.d1, curvatures.d2], axis=1),
+            error=error / size,
+            slope=slope / size**2,
+            facet=facet * size**2,
+            rough=rough,
+            tilt=error * scale,
+            radius=radius * size,
+            lights=inputs.lights,
+            table=inputs.table,
+        )
+
+    def at(self, chosen: NDArray[np.integer[Any]]) -> "Scene":
+        """Return the scene at some of its vertices.
+
+        Parameters
+        ----------
+        chosen : ndarray of int, shape=(m,)
+            Indices.
+
+        Returns
+        -------
+        Scene
+            Of m vertices.
+        """
+        return replace(
+            self,
+            points=self.points[chosen],
+            normals=self.normals[chosen],
+            curvatures=self.curvatures[chosen],
+            directions=self.directions[chosen],
+            error=self.error[chosen],
+            slope=self.slope[chosen],
+            facet=self.facet[chosen],
+            rough=self.rough[chosen],
+            tilt=self.tilt[chosen],
+        )
+
+    @property
+    def entering(self) -> FloatArray:
+        """Lambert with F_t(N.w) at `COSINES`: what a flat surface gives."""
+        lit = np.maximum(COSINES, 0.0)
+        return lit * transmittance(lit, self.table.eta)
+
+    @property
+    def mean_entering(self) -> FloatArray:
+        """Lambert with <F_t> at `COSINES`."""
+        return np.maximum(COSINES, 0.0) * mean_transmittance(self.table.eta)
+
+    @property
+    def irradiance(self) -> FloatArray:
+        """Largest irradiance of all lights together by channel; 1 without lights; shape (3,)."""
+        if not len(self.lights):
+            return np.ones(3)
+        strengths = irradiances(self.points, self.lights)
+        return np.asarray(strengths.max(axis=0, initial=0.0))
+
+    def error_of(self, model: Knowledge) -> FloatArray:
+        """Return how wrong a local model will be.
+
+        Parameters
+        ----------
+        model : Knowledge
+            What it has right.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            Bound on the absolute error of the exitance, in R_d and the lights' unit of
+            irradiance; 0 without a normal. Without lights the largest over all directions of one
+            light of unit irradiance.
+        """
+        own = {
+            "second": model.second,
+            "anisotropy": model.anisotropy,
+            "higher": model.higher,
+            "residue": model.residue,
+        }
+        weights = [weight * own.get(term, 1.0) for term, weight in WEIGHTS.items()]
+        return self.bound(model, np.array(weights))
+
+    def facets(self, tolerance: float) -> FloatArray:
+        """Return how wrong a model will be that gathers light from the mesh itself.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error that it allows itself.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            As `error_of`.
+        """
+        weights = {"facet": WEIGHTS["facet"], "base": tolerance}
+        known = Knowledge(self.entering)
+        return self.bound(known, np.array([weights.get(term, 0.0) for term in WEIGHTS]))
+
+    def bound(self, model: Knowledge, weights: FloatArray) -> FloatArray:
+        """Return the error on a flat surface and the weighted terms that curvature adds.
+
+        Parameters
+        ----------
+        model : Knowledge
+            What the model has right; its numbers are not used.
+        weights : ndarray, shape=(len(WEIGHTS),)
+            In the order of `WEIGHTS`.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            As `error_of`.
+        """
+        off = np.abs(model.flat - self.entering)
+        # Where the two cross, the error is not less than beside it: curvature moves the crossing.
+        near = np.lib.stride_tricks.sliding_window_view(np.pad(off, _NEAR, "edge"), 2 * _NEAR + 1)
+        table, fit = self.table, hinges(self.table.eta, _HINGES)
+        psi_0 = np.ascontiguousarray(table.psi[:, 0])
+        optics = Spread(
+            table.mean_free_path,
+            psi_0,
+            8.0 * psi_0 / (7.0 * table.mean_square),  # int psi = <r^2>/8
+            table.mean_square,
+            fit.weights,
+            fit.corners,
+            self.entering,
+        )
+        where = Where(
+            self.points,
+            self.normals,
+            self.curvatures,
+            self.directions,
+            self.error,
+            self.slope,
+            self.facet,
+            self.rough,
+            self.tilt,
+            self.radius,
+        )
+        known = Known(near.max(axis=1), BENDS.index(model.bend), weights)
+        return errors(where, self.lights, optics, known)

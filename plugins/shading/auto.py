@@ -1,0 +1,39 @@
+"""The cheapest model that suffices."""
+
+from dataclasses import dataclass
+
+from lutcore.arrays import FloatArray
+from lutcore.choice import choose
+from lutcore.costs import costs
+from lutcore.parameters import choice, param
+from lutcore.shading import AUTO, ShadingInputs, ShadingModel, exitance, model_registry
+from lutcore.tolerance import METRICS, Tolerance
+
+
+@model_registry.register(AUTO)
+@dataclass(frozen=True)
+class Auto(ShadingModel):
+    """Whichever model is the cheapest whose predicted error is within a tolerance.
+
+    Errors are predicted from curvature, its error bar, its change along the surface, the material
+    and the lights (`lutcore.prediction`), costs are measured on this machine (`lutcore.costs`),
+    and where a cheaper model suffices on part of the surface it is blended in without a seam
+    (`lutcore.blend`). Where no local model suffices, it is `jensen2002`, which gathers the light of
+    the whole mesh. `curvelight choose` tells what it is and why.
+    """
+
+    tolerance: float = param(0.02, 1e-4, 100.0, "", "How wrong it may be, in the metric's unit.")
+    metric: str = choice(
+        "relative",
+        METRICS,
+        "Error of 99 % of vertices in R_d, or CIEDE2000: mean or 99th percentile.",
+    )
+
+    def settled(self, inputs: ShadingInputs) -> ShadingModel:
+        """Return the model that was chosen; see `ShadingModel.settled`."""
+        wanted = Tolerance(self.tolerance, self.metric)
+        return choose(inputs, wanted, costs(inputs.progress), whole=False).model
+
+    def shade(self, inputs: ShadingInputs) -> FloatArray:
+        """Compute what leaves the surface; see `ShadingModel.shade`."""
+        return exitance(self.settled(inputs), inputs)

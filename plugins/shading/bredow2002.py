@@ -1,0 +1,62 @@
+"""Wrap lighting by angle, as RenderMan shaders had it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import prange
+
+from lutcore.arrays import FloatArray
+from lutcore.compiled import compiled
+from lutcore.fresnel import mean_transmittance
+from lutcore.lights import light_at
+from lutcore.parameters import param
+from lutcore.prediction import COSINES, Knowledge, Scene
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
+
+
+@model_registry.register("bredow2002")
+@dataclass(frozen=True)
+class Bredow2002(ShadingModel):
+    """M = sum over lights of E R_d <F_t> max(0, 1 - theta/angle), theta between N and w.
+
+    Light falls off evenly with the angle and ends where the user says, beyond 90 degrees. It is
+    nowhere Lambert, whatever the angle: `wrap` is. Curvature and material do not matter to it.
+
+    The course notes [1]_, from which Kolchin 2007 cites wrap lighting, show pictures of light
+    that wraps; the formula is that of the wrapped diffuse shader [2]_ of the same summer.
+
+    References
+    ----------
+    .. [1] R. Bredow, "Renderman on Film", SIGGRAPH 2002, course 16.
+    .. [2] ZJ, "Wrapped Diffuse Lighting model", zj.deathfall.com, August 2002.
+    """
+
+    angle: float = param(110.0, 90.0, 180.0, "degrees", "Angle from the light where it ends.")
+
+    def shade(self, inputs: ShadingInputs) -> FloatArray:
+        """Compute what leaves the surface; see `ShadingModel.shade`."""
+        table = inputs.table
+        total = table.total * mean_transmittance(table.eta)
+        return _wrapped(inputs.points, inputs.normals, inputs.lights, total, np.radians(self.angle))
+
+    def predicted_error(self, scene: Scene) -> FloatArray:
+        """Predict how wrong it is; see `ShadingModel.predicted_error`."""
+        wrapped = np.maximum(0.0, 1.0 - np.arccos(COSINES) / np.radians(self.angle))
+        flat = mean_transmittance(scene.table.eta) * wrapped
+        return scene.error_of(Knowledge(flat, bend="none"))
+
+
+@compiled(parallel=True)
+def _wrapped(
+    points: FloatArray, normals: FloatArray, lights: FloatArray, total: FloatArray, angle: float
+) -> FloatArray:
+    out = np.zeros((len(points), 3))
+    for i in prange(len(points)):
+        for light in range(len(lights)):
+            x, y, z, strength = light_at(lights, light, points[i, 0], points[i, 1], points[i, 2])
+            cosine = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
+            theta = np.arccos(min(max(cosine, -1.0), 1.0))
+            factor = strength * max(1.0 - theta / angle, 0.0)
+            for channel in range(3):
+                out[i, channel] += lights[light, 8 + channel] * total[channel] * factor
+    return out

@@ -1,0 +1,98 @@
+"""The command that chooses a model, the costs it keeps, and ``--model auto``."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app import costs as kept
+from app.cli.main import main
+from app.pipeline import Pipeline
+from app.session import Method, Session
+from lutcore import analytic
+from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
+from tests.mesh_files import ply
+
+AXES = np.eye(3)
+
+
+@pytest.fixture(autouse=True)
+def known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Let no test measure: costs in the order of the models' names."""
+    place = tmp_path / "costs.json"
+    monkeypatch.setattr(kept, "place", lambda: place)
+    forget()
+    remember({PREDICTION: Cost(5.0, "n")})
+    for number, one in enumerate(candidates()):
+        slow = 1.0 if one.model.local else 100.0
+        remember({one.label: Cost(slow * (10.0 + number), one.model.growth)})
+    return place
+
+
+@pytest.fixture
+def ball(tmp_path: Path) -> str:
+    path = tmp_path / "ball.ply"
+    body = analytic.sphere(3000, radius=10.0)
+    path.write_bytes(ply(body.mesh.vertices, body.mesh.faces))
+    return str(path)
+
+
+def test_prints_one_object(ball: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["choose", ball, "--mm-per-unit", "100", "--light", "1,0,1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {rung["model"] for rung in found["ladder"]} >= {"lambert", "jensen2002", "wrap"}
+    assert found["choice"]["adequate"]
+    assert found["choice"]["local"]
+    assert found["choice"]["reason"]
+    assert found["table_samples"] in (8, 16, 32, 64, 128)
+    assert not found["shadows"]["needed"]  # a ball is convex
+    unknown = [rung for rung in found["ladder"] if rung["model"] == "curvature-lut-physical"]
+    assert all(rung["score"] is None and not rung["adequate"] for rung in unknown)
+
+
+def test_says_plainly_when_no_local_model_is_enough(
+    ball: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["choose", ball, "--mm-per-unit", "0.3", "--light", "1,0,1"]) == 0
+    text = capsys.readouterr().out
+    assert "no local model suffices" in text
+    assert "jensen2002 suffices" in text
+    assert "random walk" in text
+
+
+def test_metric_and_tolerance_are_checked(ball: str) -> None:
+    assert main(["choose", ball, "--metric", "best"]) == 2
+    assert main(["choose", ball, "--tolerance", "-1"]) == 2
+
+
+def test_costs_are_kept_for_this_machine_only(known: Path) -> None:
+    first = kept.measured()
+    assert json.loads(known.read_bytes())["machine"] == kept.machine()
+    content = json.loads(known.read_bytes())
+    label = next(iter(content["costs"]))
+    content["costs"][label][0] = 12345.0
+    known.write_text(json.dumps(content))
+    assert kept.measured()[label].nanoseconds == 12345.0
+    # Another machine's are not taken.
+    content["machine"]["processor"] = "another"
+    known.write_text(json.dumps(content))
+    remember(first)
+    assert kept.measured()[label] == first[label]
+
+
+def test_a_broken_file_is_measured_again(known: Path) -> None:
+    known.write_text("{")
+    assert kept.measured()
+    json.loads(known.read_bytes())
+
+
+def test_auto_is_the_model_that_is_chosen(ball: str) -> None:
+    session = Session(mesh=ball, mm_per_unit=100.0)
+    pipeline = Pipeline()
+    auto = pipeline.exitance(session, Method("auto", {"tolerance": 0.5}), AXES)
+    cheapest = pipeline.exitance(session, Method(candidates()[0].name), AXES)
+    np.testing.assert_array_equal(auto, cheapest)
+    small = Session(mesh=ball, mm_per_unit=0.3)
+    gathered = pipeline.exitance(small, Method("jensen2002"), AXES)
+    np.testing.assert_array_equal(pipeline.exitance(small, Method("auto"), AXES), gathered)

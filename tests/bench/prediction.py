@@ -1,0 +1,286 @@
+"""Predicted errors against true ones, and choices against both: python -m tests.bench.prediction.
+
+1. On held-out shapes, under random materials, sizes and lights: share of the values (vertex and
+   channel) whose true error is below the predicted one, and the median of predicted over true
+   where either is above 1e-4 R_d: below that both are right, and the reference, brute force over
+   all triangles, resolves no more. `noisy scan` is a mesh with noise along its normals, shaded with
+   curvature and normals that were estimated from it, against the light gathered over the noisy
+   mesh itself.
+2. Seeded scenes: how often the chosen model meets the tolerance, and what other models that are
+   adequate would have cost.
+
+--seed N changes all that is random. --tune prints what the constants of `lutcore.prediction` come
+from: linear regression to the 95th percentile, on random shapes that are not those of the tables.
+"""
+
+import argparse
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lutcore import analytic
+from lutcore.baking import BETA_FLOOR
+from lutcore.blend import at
+from lutcore.choice import choose
+from lutcore.costs import Candidate, candidates, costs
+from lutcore.curvature import PrincipalCurvatures
+from lutcore.estimation import principal_curvatures
+from lutcore.gather.exitance import exact
+from lutcore.geometry import area_normals, vertex_corners
+from lutcore.lights import DirectionalLight
+from lutcore.materials import Material, material
+from lutcore.mesh import TriangleMesh
+from lutcore.prediction import WEIGHTS, Knowledge, Scene
+from lutcore.scale import shading_scale
+from lutcore.shading import ShadingInputs, exitance, shading_inputs
+from lutcore.tolerance import Tolerance, relative
+
+FloatArray = NDArray[np.float64]
+MATERIALS = ("skin1", "skin2", "marble", "ketchup", "apple", "cream", "potato", "wholemilk")
+# Smallest radius of curvature in diffusion lengths of the middle channel.
+SIZES = (2.0, 60.0)
+TOLERANCES = (0.004, 0.1)
+COVERED, WIDE, SEEN = 0.95, 5.0, 1e-4
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene with its truth at some vertices."""
+
+    inputs: ShadingInputs
+    truth: FloatArray
+    chosen: NDArray[np.int64]
+    scene: Scene
+
+
+Shape = tuple[TriangleMesh, PrincipalCurvatures, FloatArray]
+
+
+def smooth(found: analytic.Exact, inner: FloatArray | None = None) -> Shape:
+    """Return a shape with the weights of its vertices."""
+    everywhere = np.ones(len(found.mesh.vertices))
+    return found.mesh, found.truth, everywhere if inner is None else everywhere * inner
+
+
+def held_out(name: str, count: int) -> Shape:
+    """Return a shape of the table."""
+    if name == "cylinder":
+        found = analytic.cylinder(count, radius=1.0, length=10.0)
+        return smooth(found, np.abs(found.mesh.vertices[:, 2] - 5.0) < 1.0)
+    if name == "torus":
+        return smooth(analytic.torus(count, major=2.6, minor=1.0))
+    axes = {"2:1 long": (2, 1, 1), "4:1 long": (4, 1, 1), "4:1 flat": (4, 4, 1), "4:2:1": (4, 2, 1)}
+    return smooth(analytic.ellipsoid(count, axes=axes[name]))
+
+
+HELD_OUT = ("2:1 long", "4:1 long", "4:1 flat", "4:2:1", "cylinder", "torus")
+
+
+def any_shape(generator: np.random.Generator, count: int) -> Shape:
+    """Return a random shape."""
+    kind = generator.choice(["ellipsoid", "torus", "cylinder"], p=[0.6, 0.3, 0.1])
+    if kind == "torus":
+        return smooth(analytic.torus(count, major=1.0 / generator.uniform(0.2, 0.6), minor=1.0))
+    if kind == "cylinder":
+        return held_out("cylinder", count)
+    longest = 4.0 ** generator.random()
+    return smooth(analytic.ellipsoid(count, axes=(longest, longest ** generator.random(), 1.0)))
+
+
+def light(generator: np.random.Generator) -> DirectionalLight:
+    direction = generator.standard_normal(3)
+    return DirectionalLight(direction, float(generator.uniform(0.3, 1.0)))
+
+
+def size_in_mm(shape: PrincipalCurvatures, of: Material, generator: np.random.Generator) -> float:
+    """Return millimetres in one unit."""
+    lengths = of.mean_free_path / np.maximum(of.beta, BETA_FLOOR)
+    largest = float(np.maximum(np.abs(shape.k1), np.abs(shape.k2)).max())
+    low, high = np.log(SIZES)
+    return float(np.median(lengths) * largest * np.exp(generator.uniform(low, high)))
+
+
+def case(shape: Shape, generator: np.random.Generator, points: int, lights: int = 1) -> Case:
+    """Return a scene under random light with its truth."""
+    mesh, curvatures, weight = shape
+    of = material(str(generator.choice(MATERIALS)))
+    size = size_in_mm(curvatures, of, generator)
+    lit = [light(generator) for _ in range(lights)]
+    inputs = shading_inputs(mesh, curvatures, of, lit, size)
+    areas = Scene.of(inputs, curvatures).facet * weight
+    chosen = generator.choice(len(areas), points, replace=False, p=areas / areas.sum())
+    truth = exact(inputs, mesh.vertices[chosen])
+    return Case(inputs, truth, chosen, Scene.of(inputs, curvatures).at(chosen))
+
+
+def noisy(generator: np.random.Generator, points: int, count: int) -> Case:
+    """Return a noisy scan: what is known of it is estimated, the truth is gathered from it."""
+    body = analytic.torus(count, irregular=True, major=2.4, minor=1.0)
+    mesh = body.noisy(0.1, int(generator.integers(1 << 30)))
+    of = material(str(generator.choice(MATERIALS)))
+    size, lit = size_in_mm(body.truth, of, generator), [light(generator)]
+    raw = replace(body.truth, normals=area_normals(mesh, vertex_corners(mesh)))
+    own = shading_inputs(mesh, raw, of, lit, size)
+    scale = shading_scale(mesh, own.table.glow / size)
+    found = principal_curvatures(mesh, "auto", scale)
+    inputs = shading_inputs(mesh, found, of, lit, size)
+    chosen = generator.choice(len(mesh.vertices), points, replace=False)
+    truth = exact(own, mesh.vertices[chosen])
+    return Case(inputs, truth, chosen, Scene.of(inputs, found).at(chosen))
+
+
+def true_and_predicted(one: Candidate, of: Case) -> tuple[FloatArray, FloatArray]:
+    """Return both errors of a local model at the chosen vertices, in R_d."""
+    predicted = one.model.predicted_error(of.scene)
+    assert predicted is not None
+    given = one.model.shade(at(of.inputs, of.chosen))
+    return np.abs(given - of.truth) / of.inputs.table.total, predicted
+
+
+def predictable() -> list[Candidate]:
+    """Return the local models that predict their error."""
+    generator = np.random.default_rng(0)
+    scene = case(held_out("2:1 long", 500), generator, 5).scene
+    return [c for c in candidates() if c.model.local and c.model.predicted_error(scene) is not None]
+
+
+def coverage(seed: int, draws: int, points: int, count: int) -> dict[str, dict[str, list[float]]]:
+    """Return share covered and median ratio by shape and model."""
+    found: dict[str, dict[str, list[float]]] = {}
+    models = predictable()
+    for row, name in enumerate((*HELD_OUT, "noisy scan")):
+        generator = np.random.default_rng((seed, row))
+        if name == "noisy scan":
+            cases = [noisy(generator, points, count) for _ in range(draws)]
+        else:
+            shape = held_out(name, count)
+            cases = [case(shape, generator, points) for _ in range(draws)]
+        found[name] = {}
+        for one in models:
+            pairs = [true_and_predicted(one, of) for of in cases]
+            true = np.concatenate([pair[0].ravel() for pair in pairs])
+            predicted = np.concatenate([pair[1].ravel() for pair in pairs])
+            seen = np.maximum(true, predicted) > SEEN
+            ratio = np.median(predicted[seen] / np.maximum(true[seen], 1e-12))
+            found[name][one.label] = [float(np.mean(true <= predicted)), float(ratio)]
+    return found
+
+
+def score(shaded: FloatArray, of: Case, tolerance: Tolerance) -> float:
+    """Return the true error of what a model gave at the chosen vertices."""
+    off = np.abs(shaded - of.truth) / of.inputs.table.total
+    return tolerance.score(relative(off, of.scene.irradiance))
+
+
+def scenes(seed: int, total: int, points: int, count: int) -> dict[str, float]:
+    """Return how the choices in seeded scenes turned out."""
+    known, models = costs(), candidates()
+    met = beaten = hindsight = blended = gathered = 0
+    worst = 0.0
+    for number in range(total):
+        generator = np.random.default_rng((seed, 100, number))
+        shape = any_shape(generator, count)
+        of = case(shape, generator, points, int(generator.integers(1, 3)))
+        low, high = np.log(TOLERANCES)
+        tolerance = Tolerance(float(np.exp(generator.uniform(low, high))))
+        choice = choose(of.inputs, tolerance, known, models)
+        got = score(exitance(choice.model, of.inputs)[of.chosen], of, tolerance)
+        met += got <= tolerance.value
+        worst = max(worst, got / tolerance.value)
+        blended += choice.blend is not None
+        gathered += not choice.model.local
+        spent = choice.milliseconds
+        cheaper = [rung for rung in choice.rungs if spent > 1.2 * rung.milliseconds]
+        beaten += any(rung.adequate for rung in cheaper)
+        local = at(of.inputs, of.chosen)
+        hindsight += any(
+            score(rung.candidate.model.shade(local), of, tolerance) <= tolerance.value
+            for rung in cheaper
+            if rung.candidate.model.local and not np.isnan(rung.score)
+        )
+    return {
+        "scenes": total,
+        "met": met,
+        "worst_over_tolerance": worst,
+        "beaten_by_a_model_predicted_adequate": beaten,
+        "beaten_by_a_model_that_turned_out_adequate": hindsight,
+        "blended": blended,
+        "gathered": gathered,
+    }
+
+
+def tune(seed: int, total: int, points: int, count: int) -> None:
+    """Print for each model the weights of the terms that bound 95 % of its errors most closely."""
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_matrix, hstack, identity
+
+    cases = []
+    for number in range(total):
+        generator = np.random.default_rng((seed, 777, number))
+        if number % 4 == 3:
+            cases.append(noisy(generator, points, count))
+        else:
+            cases.append(case(any_shape(generator, count), generator, points))
+    print(f"{'':28}" + "".join(f"{name[:7]:>9}" for name in ("flat", *WEIGHTS)))
+    for one in predictable():
+        rows, truth = [], []
+        for of in cases:
+            apart = one.model.predicted_error(Apart(**vars(of.scene)))
+            assert apart is not None
+            rows.append(apart.reshape(-1, len(WEIGHTS) + 1))
+            truth.append(true_and_predicted(one, of)[0].ravel())
+        terms, true = np.concatenate(rows), np.concatenate(truth)
+        scale = terms[:, :7].sum(axis=1) + 1e-2 * terms[:, 9] + 1e-5
+        count_ = len(true)
+        # The dual form of quantile regression: the slack above costs .95, that below .05.
+        identity_ = identity(count_)
+        equal = hstack([csr_matrix(terms / scale[:, None]), identity_, -identity_]).tocsr()
+        price = np.repeat([0.0, COVERED, 1.0 - COVERED], [terms.shape[1], count_, count_])
+        found = linprog(price, A_eq=equal, b_eq=true / scale, method="highs").x
+        print(f"{one.label:28}" + "".join(f"{w:9.2g}" for w in found[: terms.shape[1]]))
+
+
+class Apart(Scene):
+    """A scene whose error is each term alone, the flat one first."""
+
+    def error_of(self, model: Knowledge) -> FloatArray:
+        flat = self.bound(model, np.zeros(len(WEIGHTS)))
+        rest = [self.bound(model, row) - flat for row in np.eye(len(WEIGHTS))]
+        return np.stack([flat, *rest], axis=-1)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--draws", type=int, default=12, help="scenes for each shape")
+    parser.add_argument("--scenes", type=int, default=100)
+    parser.add_argument("--points", type=int, default=200, help="vertices with a truth")
+    parser.add_argument("--count", type=int, default=12_000, help="vertices of a mesh")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--tune", type=int, metavar="SCENES", help="print weights, and stop")
+    options = parser.parse_args()
+    if options.tune:
+        tune(options.seed, options.tune, options.points, options.count)
+        return
+    table = coverage(options.seed, options.draws, options.points, options.count)
+    choices = scenes(options.seed, options.scenes, options.points, options.count)
+    if options.json:
+        print(json.dumps({"prediction": table, "choice": choices}))
+        return
+    print("true error below the predicted, %, and median of predicted over true")
+    print(f"{'':28}" + "".join(f"{name:>14}" for name in table))
+    for label in next(iter(table.values())):
+        cells = (row[label] for row in table.values())
+        print(f"{label:28}" + "".join(f"{100 * share:7.1f} {ratio:6.2f}" for share, ratio in cells))
+    every = [cell for row in table.values() for cell in row.values()]
+    low, wide = min(cell[0] for cell in every), max(cell[1] for cell in every)
+    good = sum(share >= COVERED and ratio <= WIDE for share, ratio in every)
+    print(f"least covered {100 * low:.1f} %, widest {wide:.2f}; {good} of {len(every)} cells meet")
+    for key, value in choices.items():
+        print(f"{key}: {value:.3g}")
+
+
+if __name__ == "__main__":
+    main()
