@@ -42,8 +42,9 @@ WEIGHTS = {
 }
 """By how much each term of `lutcore.error_terms` counts.
 
-From regression to the 95th percentile of the errors of all models on random shapes that no test and
-no table uses (``python -m tests.bench.prediction --tune 80``), rounded up to one set for all.
+One set for all models, set by hand near what regression to the 95th percentile of each model's
+errors gives on random ellipsoids, tori, cylinders and noisy tori (``python -m
+tests.bench.prediction --tune 80``); `base` and `residue` from what was left uncovered there.
 """
 
 _HINGES = 4

@@ -10,7 +10,9 @@
    adequate would have cost.
 
 --seed N changes all that is random. --tune prints what the constants of `lutcore.prediction` come
-from: linear regression to the 95th percentile, on random shapes that are not those of the tables.
+from: linear regression to the 95th percentile, on random shapes. They are of the same families as
+those of the table, other draws; the cylinder and the noisy torus differ in size, material, light
+and noise alone.
 """
 
 import argparse
