@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, TypeVar, cast
 import msgspec
 from msgspec.structs import replace
 
+from app.lighting import world_lights
 from app.loading import LoadedMesh, load_mesh
 from app.samples import PREFIX, Sample, sample
-from app.session import Cone, Directional, Method, Point, Session, Substance
+from app.session import Method, Session, Substance
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import MeshError
@@ -464,35 +465,6 @@ def _stamp(path: Path) -> tuple[int, int] | None:
     except (OSError, ValueError):
         return None
     return found.st_mtime_ns, found.st_size
-
-
-def world_lights(session: Session, axes: FloatArray) -> list[Light]:
-    """Return the session's lights in world coordinates.
-
-    Parameters
-    ----------
-    session : Session
-        Its lights are used.
-    axes : ndarray, shape=(3, 3)
-        The camera's axes, for lights that move with it.
-
-    Returns
-    -------
-    list of DirectionalLight, PointLight and ConeLight
-        As `lutcore.shade` takes them.
-    """
-    from lutcore.lights import ConeLight, DirectionalLight, PointLight
-
-    lights: list[Light] = []
-    for light in session.lights:
-        if isinstance(light, Directional):
-            direction = axes.T @ light.direction if light.frame == "camera" else light.direction
-            lights.append(DirectionalLight(direction, light.irradiance))
-        elif isinstance(light, Point):
-            lights.append(PointLight(light.position, light.intensity))
-        elif isinstance(light, Cone):
-            lights.append(ConeLight(light.position, light.direction, light.intensity, light.angle))
-    return lights
 
 
 def _key(part: object) -> bytes:

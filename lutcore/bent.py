@@ -20,10 +20,11 @@ from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
+from lutcore.convexity import invariants
 from lutcore.fresnel import compiled_transmittance
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, logarithm
-from lutcore.shading import ShadingInputs, invariants
+from lutcore.shading import ShadingInputs
 from lutcore.spline import spline_at, spline_coefficients
 
 SHARPEST = 1e-4

@@ -11,8 +11,7 @@ import numpy as np
 from app.chart.points import Missing
 from app.chart.race import Contestant, reason_of
 from lutcore.curvature import PrincipalCurvatures
-from lutcore.errors import ParameterError
-from lutcore.estimation import estimator_registry, estimators, principal_curvatures
+from lutcore.estimation import estimator_registry, principal_curvatures
 from lutcore.geometry import typical_spacing
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import Choice, declared
@@ -66,33 +65,6 @@ def spacing_of(mesh: TriangleMesh) -> float:
     """
     joined = weld(mesh).mesh
     return 0.0 if joined is None else typical_spacing(joined)
-
-
-def chosen(names: str | None) -> list[str]:
-    """Return the estimators that shall take part.
-
-    Parameters
-    ----------
-    names : str or None
-        With commas between; None for all.
-
-    Returns
-    -------
-    list of str
-        Each once.
-
-    Raises
-    ------
-    ParameterError
-        If there is none of such a name.
-    """
-    if names is None:
-        return estimators()
-    found = list(dict.fromkeys(name.strip() for name in names.split(",")))
-    for name in found:
-        if name not in estimators():
-            raise ParameterError.unknown("curvature estimator", name, estimators())
-    return found
 
 
 def contestants(

@@ -10,11 +10,11 @@ import numpy as np
 
 from app.chart.points import Missing
 from app.chart.race import Contestant, reason_of
-from app.pipeline import Pipeline, world_lights
+from app.lighting import world_lights
+from app.pipeline import Pipeline
 from app.session import Session
 from lutcore import analytic
 from lutcore.arrays import FloatArray, IndexArray
-from lutcore.errors import ParameterError
 from lutcore.lights import Light
 from lutcore.parameters import Choice, Number, create, declared
 from lutcore.progress import Progress, silent, tell
@@ -25,7 +25,6 @@ from lutcore.shading import (
     exitance,
     model_registry,
     shading_inputs,
-    shading_models,
 )
 
 _WARM_UP = 400
@@ -142,33 +141,6 @@ def warm_up(session: Session, pipeline: Pipeline, lights: Sequence[Light]) -> Tr
         profile=pipeline.profile(session),
     )
     return Trial(Scene(made, made), np.zeros(0, dtype=np.int32), np.zeros((0, 3)))
-
-
-def chosen(names: str | None) -> list[str]:
-    """Return the shading models that shall take part.
-
-    Parameters
-    ----------
-    names : str or None
-        With commas between; None for all.
-
-    Returns
-    -------
-    list of str
-        Each once.
-
-    Raises
-    ------
-    ParameterError
-        If there is none of such a name.
-    """
-    if names is None:
-        return shading_models()
-    found = list(dict.fromkeys(name.strip() for name in names.split(",")))
-    for name in found:
-        if name not in shading_models():
-            raise ParameterError.unknown("shading model", name, shading_models())
-    return found
 
 
 def contestants(

@@ -21,7 +21,8 @@ from app.chart.measure import PERCENT, Measure
 from app.chart.points import Chart, Point, Spread
 from app.chart.race import Finished, race
 from app.chart.shaders import Shading, Trial, contestants, scene_of, warm_up
-from app.pipeline import Pipeline, world_lights
+from app.lighting import world_lights
+from app.pipeline import Pipeline
 from app.session import Session
 from lutcore.arrays import FloatArray
 from lutcore.color import auto_exposure

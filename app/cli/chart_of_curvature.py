@@ -69,13 +69,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _measured(arguments: argparse.Namespace) -> Chart:
-    from app.chart.contestants import SPACINGS, chosen
+    from app.chart.contestants import SPACINGS
     from app.chart.known import surface_chart
     from app.chart.measuring import Measuring
+    from app.chart.naming import named
     from app.chart.unknown import mesh_chart
+    from lutcore.estimation import estimators
 
     measuring = charting.measuring_from(arguments, Measuring)
-    names = chosen(arguments.methods)
+    names = named(arguments.methods, "curvature estimator", estimators())
     spacings: tuple[float, ...] = SPACINGS
     if arguments.scales is not None:
         texts = dict.fromkeys(arguments.scales.split(","))

@@ -62,14 +62,15 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
-    from app.chart.shaders import chosen
+    from app.chart.naming import named
     from app.chart.shading import Trying
     from app.chart.writing import SUFFIXES
+    from lutcore.shading import shading_models
 
     start = time.perf_counter()
     work = Run(arguments, options.session_from(arguments, view="compare"))
     work.require(*_PICTURES.get(arguments.show, SUFFIXES))
-    names = chosen(arguments.models)
+    names = named(arguments.models, "shading model", shading_models())
     trying = charting.measuring_from(arguments, Trying)
     tolerance = charting.tolerance_from(arguments)
     work.warn()

@@ -7,18 +7,13 @@ from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
+from lutcore.convexity import bending, invariants
 from lutcore.fresnel import hinges
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, PsiTable, even_forms
 from lutcore.parameters import choice, param
 from lutcore.prediction import COSINES, Knowledge, Scene
-from lutcore.shading import (
-    ShadingInputs,
-    ShadingModel,
-    bending,
-    invariants,
-    model_registry,
-)
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 
 @model_registry.register("curvature-lut")

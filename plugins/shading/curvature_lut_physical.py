@@ -9,6 +9,7 @@ from numba import prange
 from lutcore.arrays import FloatArray
 from lutcore.baking import BETA_FLOOR
 from lutcore.compiled import compiled
+from lutcore.convexity import bending, invariants
 from lutcore.diffusion import Optics, optics
 from lutcore.entering import bulging, entry_cosines, entry_factors
 from lutcore.fresnel import hinges
@@ -16,7 +17,7 @@ from lutcore.halfspace import flat_albedo
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
 from lutcore.parameters import param
-from lutcore.shading import ShadingInputs, ShadingModel, bending, invariants, model_registry
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 # 1/rho is all but quadratic in the inner cosine m and in x: polynomials through Chebyshev's points
 # are within 5e-4 of it for all built-in materials, and within 2 % at an index of one.

@@ -7,11 +7,12 @@ from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
+from lutcore.convexity import invariants
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
 from lutcore.prediction import Knowledge, Scene
-from lutcore.shading import ShadingInputs, ShadingModel, invariants, model_registry
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 
 @model_registry.register("kolchin2007-simplified")

@@ -8,12 +8,13 @@ from numba import prange
 from lutcore.arrays import FloatArray
 from lutcore.baking import glowing
 from lutcore.compiled import compiled
+from lutcore.convexity import bending, invariants
 from lutcore.diffusion import optics
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK
 from lutcore.monge import LIMIT, bake_monge, round_at, set_powers, terms_at
 from lutcore.prediction import Knowledge, Scene
-from lutcore.shading import ShadingInputs, ShadingModel, bending, invariants, model_registry
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 
 @model_registry.register("monge-patch")

@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from app.chart import race as racing
-from app.chart.contestants import Subject, chosen, contestants, spacing_of
+from app.chart.contestants import Subject, contestants, spacing_of
+from app.chart.naming import named
 from app.chart.points import Missing
 from app.chart.race import Contestant, race
 from lutcore import analytic
 from lutcore.errors import CancelledError, ParameterError
-from lutcore.estimation import principal_curvatures
+from lutcore.estimation import estimators, principal_curvatures
 from lutcore.progress import silent
 
 
@@ -145,7 +146,7 @@ def test_a_contestant_does_what_its_setting_says(small):
 
 
 def test_methods_are_chosen_by_name():
-    assert chosen("vtk, ball-jet,vtk") == ["vtk", "ball-jet"]
-    assert "rusinkiewicz2004" in chosen(None)
+    assert named("vtk, ball-jet,vtk", "curvature estimator", estimators()) == ["vtk", "ball-jet"]
+    assert "rusinkiewicz2004" in named(None, "curvature estimator", estimators())
     with pytest.raises(ParameterError, match="did you mean 'ball-jet'"):
-        chosen("ball-jot")
+        named("ball-jot", "curvature estimator", estimators())

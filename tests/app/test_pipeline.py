@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from app.pipeline import Pipeline, world_lights
+from app.lighting import world_lights
+from app.pipeline import Pipeline
 from app.session import Cone, Directional, Method, Point, Session, Substance
 from lutcore.errors import MeshError, ParameterError
 

@@ -9,19 +9,12 @@ import pytest
 
 from lutcore.arrays import FloatArray
 from lutcore.baking import bake
+from lutcore.convexity import bending, invariants
 from lutcore.diffusion import diffusion_profile
 from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight
 from lutcore.progress import silent
-from lutcore.shading import (
-    ShadingInputs,
-    ShadingModel,
-    bending,
-    invariants,
-    model_registry,
-    shade,
-    shading_models,
-)
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shade, shading_models
 from tests.surfaces import torus
 
 LIGHT = DirectionalLight((1.0, 2.0, 3.0))
