@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import camera as cameras
+from app.backend import Backend
 from app.colormaps import PAPER, table
 from app.pipeline import Pipeline, Subject
 from app.render import STRIP, Image, Panel, draw
@@ -45,6 +46,8 @@ class Picture:
     difference : dict of str to dict, or None
         By model the mean, 99th percentile and maximum over the vertices of CIEDE2000 against the
         first one, where it was asked for.
+    backend : Backend
+        What drew it.
     """
 
     image: Image
@@ -52,11 +55,66 @@ class Picture:
     exposure: float | None
     ranges: dict[str, tuple[float, float]]
     difference: dict[str, dict[str, float]] | None
+    backend: Backend
 
     @property
     def range(self) -> tuple[float, float] | None:
         """Ends of the colour bar, where there is one and only one."""
         return next(iter(self.ranges.values())) if len(self.ranges) == 1 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Composition:
+    """What a picture holds, before it is drawn: a window draws the same.
+
+    Parameters
+    ----------
+    session : Session
+        What was asked for.
+    panels : tuple of Panel
+        From left to right, and row by row from the top.
+    rows : int
+        Equally high rows.
+    camera : Camera
+        Of all panels with a mesh.
+    exposure : float or None
+        The exposure, where something was shaded.
+    ranges : dict of str to tuple of 2 floats
+        See `Picture`.
+    difference : dict of str to dict, or None
+        See `Picture`.
+    """
+
+    session: Session
+    panels: tuple[Panel, ...]
+    rows: int
+    camera: Camera
+    exposure: float | None
+    ranges: dict[str, tuple[float, float]]
+    difference: dict[str, dict[str, float]] | None
+
+
+def compose(session: Session, pipeline: Pipeline) -> Composition:
+    """Return what the picture of a session holds, all colours computed.
+
+    Parameters
+    ----------
+    session : Session
+        Any session.
+    pipeline : Pipeline
+        Where arrays come from.
+
+    Returns
+    -------
+    Composition
+        For `app.render.draw`, or for a window.
+
+    Raises
+    ------
+    MeshError, ParameterError
+        If the mesh or a parameter does not allow it.
+    """
+    return _Studio(session, pipeline).composition()
 
 
 def render(session: Session, pipeline: Pipeline) -> Picture:
@@ -79,7 +137,12 @@ def render(session: Session, pipeline: Pipeline) -> Picture:
     MeshError, ParameterError, DrawingError
         If the mesh, a parameter or the machine does not allow it.
     """
-    return _Studio(session, pipeline).picture()
+    made = compose(session, pipeline)
+    pipeline.progress(0.95, "drawing")
+    drawn = draw(made.panels, session.size, session.background, made.rows)
+    return Picture(
+        drawn.image, made.camera, made.exposure, made.ranges, made.difference, drawn.backend
+    )
 
 
 def _grid(session: Session) -> tuple[int, int]:
@@ -134,8 +197,8 @@ class _Studio:
         self.ranges: dict[str, tuple[float, float]] = {}
         self.difference: dict[str, dict[str, float]] | None = None
 
-    def picture(self) -> Picture:
-        """Draw."""
+    def composition(self) -> Composition:
+        """Compute all colours."""
         view = self.session.view
         panels: list[Panel] = []
         if view in ("shade", "figure"):
@@ -146,9 +209,15 @@ class _Studio:
             panels += [
                 panel for name in names_shown(self.session) for panel in self._curvature(name)
             ]
-        self.pipeline.progress(0.95, "drawing")
-        image = draw(panels, self.session.size, self.session.background, self.rows)
-        return Picture(image, self.camera, self.exposure, self.ranges, self.difference)
+        return Composition(
+            self.session,
+            tuple(panels),
+            self.rows,
+            self.camera,
+            self.exposure,
+            self.ranges,
+            self.difference,
+        )
 
     def _shaded(self, model: Method) -> Panel:
         linear = self._linear(model)

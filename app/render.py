@@ -1,6 +1,6 @@
 """From panels to pixels: the only way to a picture."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import gl
+from app.backend import Backend, backend_of
 from app.scene import (
     ColorScale,
     Surface,
@@ -22,7 +23,7 @@ from app.session import Camera, Vector
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkPolyData
-    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer, vtkRenderWindow
 
 Image = NDArray[np.uint8]
 Shapes = dict[tuple[int, Vector], "vtkPolyData"]
@@ -51,7 +52,25 @@ class Panel:
     camera: Camera | None = None
 
 
-def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int = 1) -> Image:
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """Pixels, and what drew them.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape=(height, width, 3)
+        sRGB, the first row at the top.
+    backend : Backend
+        The driver.
+    """
+
+    image: Image
+    backend: Backend
+
+
+def draw(
+    panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int = 1
+) -> Drawing:
     """Draw panels side by side.
 
     Parameters
@@ -67,8 +86,8 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: 
 
     Returns
     -------
-    ndarray of uint8, shape=(height, width, 3)
-        sRGB, the first row at the top.
+    Drawing
+        The same pixels for the same panels, bit for bit, from the same driver.
 
     Raises
     ------
@@ -77,7 +96,6 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: 
     ParameterError
         If the background is no colour.
     """
-    shade = color(background)
     gl.require()
     import vtkmodules.vtkRenderingFreeType
     import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
@@ -89,27 +107,91 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: 
     # Four samples cost 1.6 times one even on a software renderer, once per picture.
     window.SetMultiSamples(_SAMPLES)
     window.SetSize(*size)
+    try:
+        fill(window, panels, size, background, rows)
+        window.Render()
+        return Drawing(_grab(window, size), backend_of(window))
+    finally:
+        window.Finalize()
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A panel that is in a window.
+
+    Parameters
+    ----------
+    panel : Panel
+        What was put there.
+    renderer : vtkRenderer
+        Of its mesh or its colour bar.
+    actor : vtkActor or None
+        Of its mesh.
+    """
+
+    panel: Panel
+    renderer: "vtkRenderer"
+    actor: "vtkActor | None"
+
+
+def fill(
+    window: "vtkRenderWindow",
+    panels: Sequence[Panel],
+    size: tuple[int, int],
+    background: str,
+    rows: int = 1,
+    origin: Vector | None = None,
+) -> list[Drawn]:
+    """Put panels into a window that has no renderers yet.
+
+    Parameters
+    ----------
+    window : vtkRenderWindow
+        On the screen or off it.
+    panels : sequence of Panel
+        See `draw`.
+    size : tuple of 2 ints
+        Of the window, pixels.
+    background : str
+        A CSS colour.
+    rows : int
+        Equally high rows.
+    origin : tuple of 3 floats, optional
+        What the geometry is drawn relative to; each camera's target where it is left out.
+
+    Returns
+    -------
+    list of Drawn
+        In the order of the panels.
+
+    Raises
+    ------
+    ParameterError
+        If the background is no colour.
+    """
+    shade = color(background)
     shapes: Shapes = {}
     across = len(panels) // rows
     # A grid is looked at as a whole, so from farther away.
     height = size[1] * (_GRID_LETTERS if rows > 1 else 1.0)
     letters = _caption_letters(panels, (size[0], height))
-    try:
-        for index, panel in enumerate(panels):
-            row, column = divmod(index, across)
-            left = sum(other.width for other in panels[index - column : index])
-            bottom = 1.0 - (row + 1) / rows
-            right, top = left + panel.width, bottom + 1.0 / rows
-            strip = bottom + STRIP if isinstance(panel.content, Surface) else bottom
-            pixels = (panel.width * size[0], height)
-            _fill(panel, shapes)(_add(window, shade, (left, strip, right, top)), pixels)
-            if isinstance(panel.content, Surface):
-                below = _add(window, shade, (left, bottom, right, strip))
-                fill_caption(below, panel.content.caption, letters)
-        window.Render()
-        return _grab(window, size)
-    finally:
-        window.Finalize()
+    made = []
+    for index, panel in enumerate(panels):
+        row, column = divmod(index, across)
+        left = sum(other.width for other in panels[index - column : index])
+        bottom = 1.0 - (row + 1) / rows
+        right, top = left + panel.width, bottom + 1.0 / rows
+        strip = bottom + STRIP if isinstance(panel.content, Surface) else bottom
+        renderer = _add(window, shade, (left, strip, right, top))
+        actor = None
+        if isinstance(panel.content, ColorScale):
+            fill_bar(renderer, panel.content, (panel.width * size[0], height))
+        else:
+            actor = _fill_mesh(renderer, panel, shapes, origin)
+            below = _add(window, shade, (left, bottom, right, strip))
+            fill_caption(below, panel.content.caption, letters)
+        made.append(Drawn(panel, renderer, actor))
+    return made
 
 
 def _caption_letters(panels: Sequence[Panel], size: tuple[float, float]) -> int:
@@ -140,16 +222,17 @@ def _add(
     return renderer
 
 
-def _fill(panel: Panel, shapes: Shapes) -> Callable[..., None]:
-    content, camera = panel.content, panel.camera
-    if isinstance(content, ColorScale):
-        return lambda renderer, pixels: fill_bar(renderer, content, pixels)
-    if camera is None:
+def _fill_mesh(
+    renderer: "vtkRenderer", panel: Panel, shapes: Shapes, origin: Vector | None
+) -> "vtkActor":
+    surface, camera = panel.content, panel.camera
+    if camera is None or not isinstance(surface, Surface):
         raise ValueError("a panel with a mesh needs a camera")
-    key = id(content.mesh), camera.target
+    around = camera.target if origin is None else origin
+    key = id(surface.mesh), around
     if key not in shapes:
-        shapes[key] = shape_of(content.mesh, camera)
-    return lambda renderer, _: fill_surface(renderer, content, camera, shapes[key])
+        shapes[key] = shape_of(surface.mesh, around)
+    return fill_surface(renderer, surface, camera, shapes[key], around)
 
 
 def _grab(window: object, size: tuple[int, int]) -> Image:

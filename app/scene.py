@@ -21,7 +21,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextProperty,
 )
 
-from app.session import Camera
+from app.session import Camera, Vector
 from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 
@@ -115,25 +115,25 @@ def color(text: str) -> tuple[float, float, float]:
     return red / 255.0, green / 255.0, blue / 255.0
 
 
-def shape_of(mesh: TriangleMesh, camera: Camera) -> vtkPolyData:
-    """Return a mesh's geometry as VTK draws it, for all surfaces of that mesh and camera.
+def shape_of(mesh: TriangleMesh, origin: Vector) -> vtkPolyData:
+    """Return a mesh's geometry as VTK draws it, for all surfaces of that mesh.
 
     Parameters
     ----------
     mesh : TriangleMesh
         The mesh.
-    camera : Camera
-        Where it is seen from.
+    origin : tuple of 3 floats
+        A point near what is looked at.
 
     Returns
     -------
     vtkPolyData
-        Points relative to the camera's target, and triangles.
+        Points relative to the origin, and triangles.
     """
     points = vtkPoints()
     # The GPU gets single precision: around what is looked at it stays exact, however far the mesh
     # lies from the origin or stray parts lie from the mesh.
-    around = (mesh.vertices - np.asarray(camera.target)).astype(np.float32)
+    around = (mesh.vertices - np.asarray(origin)).astype(np.float32)
     points.SetData(numpy_to_vtk(around, deep=True))
     cells = vtkCellArray()
     cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=True))
@@ -144,8 +144,8 @@ def shape_of(mesh: TriangleMesh, camera: Camera) -> vtkPolyData:
 
 
 def fill_surface(
-    renderer: vtkRenderer, surface: Surface, camera: Camera, shape: vtkPolyData
-) -> None:
+    renderer: vtkRenderer, surface: Surface, camera: Camera, shape: vtkPolyData, origin: Vector
+) -> vtkActor:
     """Put a surface into a renderer, seen by a camera.
 
     Parameters
@@ -158,6 +158,13 @@ def fill_surface(
         Where from.
     shape : vtkPolyData
         Its geometry; see `shape_of`.
+    origin : tuple of 3 floats
+        What the geometry is relative to.
+
+    Returns
+    -------
+    vtkActor
+        What was put there.
     """
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(_poly_data(surface, shape))
@@ -173,7 +180,8 @@ def fill_surface(
     else:
         actor.GetProperty().LightingOff()
     renderer.AddActor(actor)
-    _aim(renderer, camera)
+    aim(renderer, camera, origin)
+    return actor
 
 
 def fill_caption(renderer: vtkRenderer, caption: str, size: int) -> None:
@@ -271,14 +279,25 @@ def _light(renderer: vtkRenderer, actor: vtkActor) -> None:
     actor.GetProperty().SetInterpolationToPhong()
 
 
-def _aim(renderer: vtkRenderer, camera: Camera) -> None:
+def aim(renderer: vtkRenderer, camera: Camera, origin: Vector) -> None:
+    """Look at what a renderer holds.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        The renderer.
+    camera : Camera
+        Where from.
+    origin : tuple of 3 floats
+        What the geometry is relative to.
+    """
     view = renderer.GetActiveCamera()
-    view.SetPosition(*np.subtract(camera.position, camera.target))
-    view.SetFocalPoint(0.0, 0.0, 0.0)
+    view.SetPosition(*np.subtract(camera.position, origin))
+    view.SetFocalPoint(*np.subtract(camera.target, origin))
     view.SetViewUp(*camera.up)
     view.SetViewAngle(camera.angle)
+    view.SetParallelProjection(camera.height is not None)
     if camera.height is not None:
-        view.ParallelProjectionOn()
         view.SetParallelScale(camera.height / 2.0)
     renderer.ResetCameraClippingRange()
 
