@@ -1,13 +1,14 @@
 """``mesh.curvelight`` on every `pyvista.PolyData`, found by PyVista through its entry point."""
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import pyvista
 
 from app import export
-from app.session import FIGURE_LIGHTS
+from app.session import FIGURE_LIGHTS, Shadows
 from lutcore.arrays import FloatArray, finite
 from lutcore.color import auto_exposure
 from lutcore.diffusion import DiffusionProfile
@@ -15,6 +16,9 @@ from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight, Light
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    from lutcore.shading import ShadingInputs
 
 
 @pyvista.register_dataset_accessor("curvelight", pyvista.PolyData)
@@ -80,6 +84,7 @@ class CurvelightAccessor:
         mm_per_unit: float = 1.0,
         *,
         profile: DiffusionProfile | str = "jensen2001",
+        shadows: Shadows = "off",
         method: str = "auto",
         scale: float | None = None,
         exposure: float | None = None,
@@ -101,6 +106,8 @@ class CurvelightAccessor:
             Size of a mesh unit, mm.
         profile : DiffusionProfile or str
             How light spreads in the material, or its name; see `lutcore.diffusion_profiles`.
+        shadows : {"off", "on", "auto"}
+            Whether the surface casts shadows on itself, ``auto`` where they change much.
         method : str
             A curvature estimator.
         scale : float, optional
@@ -128,34 +135,37 @@ class CurvelightAccessor:
         from lutcore.baking import bake
         from lutcore.detail import detail_seen
         from lutcore.estimation import principal_curvatures
+        from lutcore.parameters import create
         from lutcore.scale import shading_scale
-        from lutcore.shading import AUTO, shade
+        from lutcore.shading import AUTO, exitance, model_registry, shading_inputs
 
+        if shadows not in get_args(Shadows):
+            raise ParameterError.unknown("shadows", shadows, get_args(Shadows))
         mesh = self._mesh()
         per_unit = float(finite("mm_per_unit", mm_per_unit, ()))
         if per_unit <= 0.0:
             raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
+        plugin = create(model_registry.get(model), f"shading model {model!r}", parameters)
+        table = bake(material, profile=profile)
         detail = None
         if scale is None and method == "auto":
-            scale = shading_scale(mesh, bake(material, profile=profile).glow / per_unit)
+            scale = shading_scale(mesh, table.glow / per_unit)
             detail = detail_seen(mesh, material, per_unit, profile=profile)
         curvatures = principal_curvatures(mesh, method, scale)
         chosen = _default_lights() if lights is None else lights
         if model == AUTO:
             measured()
-        exitance = shade(
-            mesh,
-            curvatures,
-            material,
-            chosen,
-            model,
-            mm_per_unit,
-            profile=profile,
-            detail=detail,
-            **parameters,
+        inputs = shading_inputs(
+            mesh, curvatures, material, chosen, per_unit, profile=profile, detail=detail
         )
-        factor = auto_exposure(exitance) if exposure is None else exposure
-        return self._with(export.shading_arrays(exitance, factor))
+        settled = plugin.settled(inputs)
+        if shadows != "off" and len(inputs.lights):
+            glow = table.mean_free_path * table.psi[:, 0] / per_unit
+            shares = _shares(mesh, inputs, shadows, glow if settled.local else None)
+            inputs = replace(inputs, visibility=shares)
+        light = exitance(settled, inputs)
+        factor = auto_exposure(light) if exposure is None else exposure
+        return self._with(export.shading_arrays(light, factor))
 
     def _mesh(self) -> TriangleMesh:
         triangles = self._data if self._data.is_all_triangles else self._data.triangulate()
@@ -166,6 +176,21 @@ class CurvelightAccessor:
         result = self._data.copy()
         result.point_data.update(arrays)
         return result
+
+
+def _shares(
+    mesh: TriangleMesh, inputs: "ShadingInputs", shadows: Shadows, glow: FloatArray | None
+) -> FloatArray | None:
+    """Return which lights reach which vertices, softened by `glow` where a model is local."""
+    from lutcore.visibility import forecast, softened, visibility
+
+    # As `app.pipeline.Pipeline.visibility`, which keeps each step.
+    assert inputs.curvatures is not None
+    normals = inputs.curvatures.normals
+    if shadows == "auto" and not forecast(mesh, normals, inputs.lights).needed:
+        return None
+    seen = visibility(mesh, inputs.lights)
+    return seen if glow is None else softened(seen, mesh, glow)
 
 
 def _default_lights() -> list[Light]:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.writing import WriteError, write_bytes
+from lutcore.arrays import AnyArray
 from lutcore.costs import Cost, costs, forget, remember
 from lutcore.progress import Progress, silent
 
@@ -68,6 +69,32 @@ def measured(progress: Progress = silent, again: bool = False) -> dict[str, Cost
         with suppress(WriteError):  # a cache that cannot be kept is measured again
             write_bytes(path, json.dumps(content, indent=2).encode())
     return found
+
+
+def known() -> bool:
+    """Tell whether all models were measured on this machine.
+
+    Returns
+    -------
+    bool
+        False if `measured` would take a while.
+    """
+    from lutcore.costs import PREDICTION, candidates
+
+    kept = _read(place(), machine())
+    return all(label in kept for label in (*(one.label for one in candidates()), PREDICTION))
+
+
+def in_child() -> dict[str, AnyArray]:
+    """Measure what is not known yet, for `lutcore.isolated.run_isolated`.
+
+    Returns
+    -------
+    dict
+        Empty: the figures are in the file at `place`.
+    """
+    measured()
+    return {}
 
 
 def place() -> Path:

@@ -3,6 +3,7 @@
 import json
 
 from app import gl
+from app.backend import backend_of
 
 
 def main() -> None:
@@ -20,12 +21,8 @@ def main() -> None:
     window.SetSize(32, 32)
     window.AddRenderer(vtkRenderer())
     window.Render()
-    found = {}
-    for line in window.ReportCapabilities().splitlines():
-        key, _, value = line.partition(":")
-        for wanted in ("renderer", "vendor", "version"):
-            if key.strip() == f"OpenGL {wanted} string":
-                found[wanted] = value.strip()
+    backend = backend_of(window)
+    found = {name: getattr(backend, name) for name in backend.__struct_fields__}
     found["window"] = window.GetClassName()
     software = any(word in found["renderer"].lower() for word in ("llvmpipe", "softpipe", "swr"))
     found["software"] = "yes" if software else "no"

@@ -1,11 +1,15 @@
 """A session's lights in world coordinates."""
 
+from typing import TYPE_CHECKING
+
 from app.session import Cone, Directional, Point, Session
 from lutcore.arrays import FloatArray
-from lutcore.lights import Light
+
+if TYPE_CHECKING:
+    from lutcore.lights import Light
 
 
-def world_lights(session: Session, axes: FloatArray) -> list[Light]:
+def world_lights(session: Session, axes: FloatArray) -> "list[Light]":
     """Return the session's lights in world coordinates.
 
     Parameters

@@ -1,24 +1,32 @@
 """From a session to its picture: which surfaces, from where, in which colours."""
 
-from collections.abc import Sequence
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from app import camera as cameras
 from app.backend import Backend
 from app.colormaps import PAPER, table
+from app.comparison import Place, Single, compared
+from app.contestants import alone, bars, check, labels, tiles
+from app.differences import Difference
+from app.fading import faded
+from app.leaving import leaving, view_of
 from app.pipeline import Pipeline, Subject
 from app.render import STRIP, Image, Panel, draw
 from app.scene import ColorScale, Surface
 from app.session import Camera, Method, Session
+from app.settling import settled
 from app.shown import names_shown, shown
+from app.texturing import Coat
 from lutcore.arrays import FloatArray
-from lutcore.color import auto_exposure, srgb_bytes, srgb_decode
+from lutcore.color import auto_exposure, product_bytes
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import ParameterError
-from lutcore.fresnel import transmittance
+from lutcore.shading import AUTO
 
 _BAR_PIXELS_PER_HEIGHT = 0.16
 _GRID_BAR = 0.26
@@ -42,10 +50,11 @@ class Picture:
     exposure : float or None
         The exposure, where something was shaded.
     ranges : dict of str to tuple of 2 floats
-        Ends of the colour bars by quantity, ``ciede2000`` for a difference.
-    difference : dict of str to dict, or None
-        By model the mean, 99th percentile and maximum over the vertices of CIEDE2000 against the
-        first one, where it was asked for.
+        Ends of the colour bars by quantity, ``ciede2000`` for a difference of colours and
+        ``difference`` for one of a quantity.
+    difference : dict of str to Difference, or None
+        How far each of the compared is from the first, where it was asked for: CIEDE2000, or in
+        the unit of the quantity that estimators are compared by.
     backend : Backend
         What drew it.
     """
@@ -54,7 +63,7 @@ class Picture:
     camera: Camera
     exposure: float | None
     ranges: dict[str, tuple[float, float]]
-    difference: dict[str, dict[str, float]] | None
+    difference: dict[str, Difference] | None
     backend: Backend
 
     @property
@@ -81,7 +90,7 @@ class Composition:
         The exposure, where something was shaded.
     ranges : dict of str to tuple of 2 floats
         See `Picture`.
-    difference : dict of str to dict, or None
+    difference : dict of str to Difference, or None
         See `Picture`.
     """
 
@@ -91,10 +100,10 @@ class Composition:
     camera: Camera
     exposure: float | None
     ranges: dict[str, tuple[float, float]]
-    difference: dict[str, dict[str, float]] | None
+    difference: dict[str, Difference] | None
 
 
-def compose(session: Session, pipeline: Pipeline) -> Composition:
+def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> Composition:
     """Return what the picture of a session holds, all colours computed.
 
     Parameters
@@ -103,6 +112,9 @@ def compose(session: Session, pipeline: Pipeline) -> Composition:
         Any session.
     pipeline : Pipeline
         Where arrays come from.
+    held : float, optional
+        Exposure where the session leaves it open: while a light is dragged, one that follows it
+        would flicker.
 
     Returns
     -------
@@ -114,7 +126,7 @@ def compose(session: Session, pipeline: Pipeline) -> Composition:
     MeshError, ParameterError
         If the mesh or a parameter does not allow it.
     """
-    return _Studio(session, pipeline).composition()
+    return _Studio(session, pipeline, held).composition()
 
 
 def render(session: Session, pipeline: Pipeline) -> Picture:
@@ -155,47 +167,39 @@ def _grid(session: Session) -> tuple[int, int]:
         if session.quantity == "all":
             raise ParameterError("a figure shows one quantity; choose one instead of all")
         return 2, 1
-    if session.view != "compare":
-        return 1, 1
-    if _below(session):
-        return len(session.compared), 2
-    return len(session.compared) + session.difference, 1
-
-
-def _below(session: Session) -> bool:
-    """Tell whether differences lie below the models: where there are several."""
-    return session.view == "compare" and session.difference and len(session.compared) > 2
+    return tiles(session) if session.view == "compare" else (1, 1)
 
 
 class _Studio:
     """One session on its way to a picture."""
 
-    def __init__(self, session: Session, pipeline: Pipeline) -> None:
+    def __init__(self, session: Session, pipeline: Pipeline, held: float | None = None) -> None:
         self.session = session
         self.pipeline = pipeline
         self.subject: Subject = pipeline.subject(session)
-        self.below = _below(session)
-        self.has_bar = session.view in ("curvature", "figure") or session.difference
-        self.has_bar = self.has_bar and not self.below
+        check(session)
         self.columns, self.rows = _grid(session)
+        comparing = session.view == "compare"
         share = _BAR_PIXELS_PER_HEIGHT if self.rows == 1 else _GRID_BAR
-        bar = max(share * session.size[1] / self.rows, _LEAST_BAR)
-        bars = self.columns if session.view == "curvature" else int(self.has_bar)
-        self.bar_share = min(bar / session.size[0], _MOST_BAR / max(bars, 1))
-        if session.view == "compare" and len(session.compared) < 2:
-            raise ParameterError("a comparison needs two models or more")
-        self.width = (1.0 - self.bar_share * bars) / self.columns
+        height = session.size[1] / self.rows
+        if comparing:  # whose bars go over all rows
+            share, height = _BAR_PIXELS_PER_HEIGHT, session.size[1]
+        bar = max(share * height, _LEAST_BAR)
+        counts = {"curvature": self.columns, "figure": 1}
+        count = bars(session) if comparing else counts.get(session.view, 0)
+        self.bar_share = min(bar / session.size[0], _MOST_BAR / max(count, 1))
+        self.width = (1.0 - self.bar_share * count) / self.columns
         if self.width * session.size[0] < _LEAST_WIDTH:
             raise ParameterError(
                 f"a picture {session.size[0]} pixels wide leaves less than {_LEAST_WIDTH} for "
                 "each surface; make it wider"
             )
         aspect = self.width * session.size[0] / (session.size[1] * (1.0 / self.rows - STRIP))
-        self.camera = cameras.camera_of(session.camera, self.subject, aspect)
+        self.camera = view_of(session, pipeline, aspect)
         self.axes = cameras.axes(self.camera)
-        self.exposure: float | None = session.exposure
+        self.exposure: float | None = held if session.exposure is None else session.exposure
         self.ranges: dict[str, tuple[float, float]] = {}
-        self.difference: dict[str, dict[str, float]] | None = None
+        self.difference: dict[str, Difference] | None = None
 
     def composition(self) -> Composition:
         """Compute all colours."""
@@ -220,38 +224,37 @@ class _Studio:
         )
 
     def _shaded(self, model: Method) -> Panel:
-        linear = self._linear(model)
-        rgb = self._display(linear)
         material = self.pipeline.material(self.session).name
         size = self.pipeline.mm_per_unit(self.session)
-        caption = f"{material}, {model.name}, {size:g} mm per unit"
-        return Panel(self._surface(rgb=rgb, caption=caption), self.width, self.camera)
+        caption = f"{material}, {self._named(model)}, {size:g} mm per unit"
+        return Panel(self._lit(model, caption), self.width, self.camera)
+
+    def _lit(self, model: Method, caption: str) -> Surface:
+        """Show a model's light; a texture is drawn by the pixel."""
+        if self.exposure is None:
+            self.exposure = auto_exposure(self._linear(model))
+        light = self.pipeline.exitance(self.session, model, self.axes)
+        rgb = product_bytes(light, self._leaving(), self.exposure)
+        surface = self._surface(rgb=rgb, caption=caption)
+        texture = self.subject.loaded.texture
+        if texture is None or not self.session.albedo:
+            return surface
+        light = light * self._leaving(textured=False) * self.exposure
+        return dataclasses.replace(surface, coat=Coat(texture, light.astype(np.float32)))
+
+    def _named(self, model: Method) -> str:
+        if model.name != AUTO:
+            return model.name
+        found = settled(self.pipeline.settled(self.session, model, self.axes))
+        return f"{model.name}: {found.label}"
 
     def _linear(self, model: Method) -> FloatArray:
         """Light towards the camera, times pi: exitance, exit Fresnel factor, albedo."""
-        exitance = self.pipeline.exitance(self.session, model, self.axes)
         # Kolchin 2007, eq. 6: L_o = F_t(N_o . w_o) / pi times the exitance.
-        linear = exitance * self._exit_transmittance()[:, None]
-        colors = self.subject.loaded.colors
-        if self.session.albedo and colors is not None:
-            linear *= srgb_decode(colors)
-        return linear
+        return self.pipeline.exitance(self.session, model, self.axes) * self._leaving()
 
-    def _exit_transmittance(self) -> FloatArray:
-        normals = self._curvatures().normals
-        if self.camera.height is None:
-            towards = np.asarray(self.camera.position) - self.subject.mesh.vertices
-            towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-            cosine = np.einsum("ij,ij->i", normals, towards)
-        else:
-            cosine = normals @ self.axes[2]
-        # A surface seen from behind, through a hole, is shown as its front would be.
-        return transmittance(np.abs(cosine), self.pipeline.material(self.session).eta)
-
-    def _display(self, linear: FloatArray) -> NDArray[np.uint8]:
-        if self.exposure is None:
-            self.exposure = auto_exposure(linear)
-        return srgb_bytes(linear, self.exposure)
+    def _leaving(self, textured: bool = True) -> FloatArray:
+        return leaving(self.session, self.pipeline, self.camera, textured)
 
     def _curvatures(self) -> PrincipalCurvatures:
         return self.pipeline.curvatures(self.session)
@@ -264,47 +267,63 @@ class _Studio:
             colors = colors[::-1]
         alone = self.columns == 1 or self.session.view == "figure"
         title, caption = (found.quantity.title, "") if alone else ("", found.quantity.heading)
+        strokes = self.pipeline.strokes(self.session) if self.session.strokes else None
+        if self.session.strokes and strokes is None:
+            none = f"{self.session.estimator.name} gives no directions"
+            caption = f"{caption} ({none})" if caption else none
         scale = ColorScale(colors, found.low, found.high, title)
         # Infinite errors are drawn at the end of the scale.
         values = np.nan_to_num(found.values, posinf=found.high)
-        lit = not self.session.flat
-        surface = self._surface(values=values, scale=scale, lit=lit, caption=caption)
+        surface = dataclasses.replace(
+            self._surface(values=values, scale=scale, caption=caption),
+            rgb=faded(values, scale, self._curvatures()) if self.session.fade else None,
+            lit=not self.session.flat,
+            strokes=strokes,
+        )
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]
 
     def _comparison(self) -> list[Panel]:
-        linear = [self._linear(model) for model in self.session.compared]
-        shown = [self._display(light) for light in linear]
-        panels = [
-            Panel(self._surface(rgb=rgb, caption=model.label), self.width, self.camera)
-            for rgb, model in zip(shown, self.session.compared, strict=True)
-        ]
-        return panels + (self._differences(shown) if self.session.difference else [])
+        place = Place(self.camera, self.width, self.bar_share)
+        singles = self._curved() if self.session.compared_by == "estimator" else self._colored()
+        made = compared(self.session, singles, place)
+        self.difference = made.difference
+        self.ranges |= made.ranges
+        return list(made.panels)
 
-    def _differences(self, shown: Sequence[NDArray[np.uint8]]) -> list[Panel]:
-        """Draw how far models are from the first: one beside them, several below."""
-        from lutcore.metrics import ciede2000
+    def _colored(self) -> list[Single]:
+        """Shade what is compared under one exposure: a darker one is to look darker."""
+        studios = [self._studio(one) for one in alone(self.session)]
+        linear = [one._linear(one.session.model) for one in studios]
+        if self.exposure is None:
+            # Models are of one material, so nearly as bright as the first. Among materials the
+            # brightest decides: what is clipped could not be compared.
+            counted = linear if self.session.compared_by == "material" else linear[:1]
+            self.exposure = min(auto_exposure(light) for light in counted)
+        singles = []
+        for one, light, label in zip(studios, linear, labels(self.session), strict=True):
+            one.exposure = self.exposure
+            surface = one._lit(one.session.model, label)
+            singles.append(Single(surface, np.ones(len(light), dtype=bool)))
+        return singles
 
-        first, *others = self.session.compared
-        values = [ciede2000(shown[0], other) for other in shown[1 : None if self.below else 2]]
-        self.difference = {
-            model.label: {
-                "mean": float(one.mean()),
-                "p99": float(np.percentile(one, 99.0)),
-                "max": float(one.max()),
-            }
-            for one, model in zip(values, others, strict=False)
-        }
-        most = max(one["p99"] for one in self.difference.values())
-        ends = self.session.range or (0.0, max(1.0, most))
-        self.ranges["ciede2000"] = ends
-        scale = ColorScale(table(self.session.colormap or "magma"), *ends, "CIEDE2000")
-        maps = [
-            self._surface(values=one, scale=scale, caption=f"{model.name} against {first.name}")
-            for one, model in zip(values, others, strict=False)
-        ]
-        panels = [Panel(surface, self.width, self.camera) for surface in maps]
-        bar = Panel(scale, self.width if self.below else self.bar_share)
-        return [bar, *panels] if self.below else [*panels, bar]
+    def _curved(self) -> list[Single]:
+        """Measure with each estimator, all in one range that is wide enough for each."""
+        name = self.session.quantity
+        sessions = alone(self.session)
+        found = [shown(one, self.pipeline, name) for one in sessions]
+        ends = min(one.low for one in found), max(one.high for one in found)
+        self.ranges[name] = ends
+        singles = []
+        for session, label in zip(sessions, labels(self.session), strict=True):
+            studio = self._studio(replace(session, range=ends))
+            surface = studio._curvature(name)[0].content
+            assert isinstance(surface, Surface)
+            surface = dataclasses.replace(surface, caption=label)
+            singles.append(Single(surface, studio._curvatures().estimated))
+        return singles
+
+    def _studio(self, session: Session) -> "_Studio":
+        return _Studio(replace(session, camera=self.camera), self.pipeline)
 
     def _surface(
         self,
@@ -312,8 +331,7 @@ class _Studio:
         rgb: NDArray[np.uint8] | None = None,
         values: FloatArray | None = None,
         scale: ColorScale | None = None,
-        lit: bool = False,
         caption: str = "",
     ) -> Surface:
         normals = self._curvatures().normals
-        return Surface(self.subject.mesh, normals, rgb, values, scale, lit, caption)
+        return Surface(self.subject.mesh, normals, rgb, values, scale, caption=caption)

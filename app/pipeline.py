@@ -1,5 +1,6 @@
 """From a session to per-vertex arrays, each computed once and kept."""
 
+import dataclasses
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
@@ -10,26 +11,30 @@ import msgspec
 from msgspec.structs import replace
 
 from app.lighting import world_lights
-from app.loading import LoadedMesh, load_mesh
+from app.loading import LoadedMesh
 from app.samples import PREFIX, Sample, sample
-from app.session import Method, Session, Substance
+from app.session import Method, Repair, Session, Substance, Volume
+from app.volume import load_surface, source_of
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import MeshError
-from lutcore.lights import Light
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, silent
 
 if TYPE_CHECKING:
     from app.consultation import Consultation
+    from app.strokes import Strokes
     from lutcore.detail import Detail
     from lutcore.diffusion import DiffusionProfile
+    from lutcore.lights import Light
     from lutcore.lut import PsiTable
-    from lutcore.shading import ShadingInputs
+    from lutcore.shading import ShadingInputs, ShadingModel
 
 T = TypeVar("T")
-_KEPT = 8
+# Of each kind of step, the last few results; a light that is dragged pushes out nothing else.
+_KEPT = 6
+_KEPT_OF = {"exitance": 8, "light": 8}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +47,31 @@ class Subject:
         The mesh, its colours, its warnings.
     sample : Sample or None
         The sample it came from.
+    volume : Volume
+        How it became a surface, if it was a volume.
+    repairs : tuple of Repair
+        What was done to it since.
     """
 
     loaded: LoadedMesh
     sample: Sample | None
+    volume: Volume
+    repairs: tuple[Repair, ...] = ()
 
     @property
     def mesh(self) -> TriangleMesh:
-        """The triangle mesh, vertex count and order as in the file."""
+        """The triangle mesh, vertex count and order as in the file, if nothing is repaired."""
         return self.loaded.mesh
+
+    @property
+    def key(self) -> Hashable:
+        """What tells this surface from others: its files' content, and what was made of it."""
+        return self.loaded.digest, _key((self.volume, self.repairs))
+
+    @property
+    def mm_per_unit(self) -> float | None:
+        """Size of a mesh unit, where the sample or the file says it."""
+        return self.sample.mm_per_unit if self.sample else self.loaded.mm_per_unit
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -70,7 +91,7 @@ class Pipeline:
 
     def __init__(self, progress: Progress = silent) -> None:
         self.progress = progress
-        self._kept: OrderedDict[Hashable, object] = OrderedDict()
+        self._kept: dict[str, OrderedDict[Hashable, object]] = {}
 
     def subject(self, session: Session) -> Subject:
         """Return the session's mesh.
@@ -78,24 +99,44 @@ class Pipeline:
         Parameters
         ----------
         session : Session
-            Its `mesh` is used.
+            Its `mesh`, `volume` and `repairs` are used.
 
         Returns
         -------
         Subject
-            The loaded mesh.
+            The loaded mesh, or the surface of the volume, repaired.
 
         Raises
         ------
         MeshError
-            If it cannot be read or holds no surface.
+            If it cannot be read or holds no surface, or a repair is not possible.
         ParameterError
             If it names a sample that does not exist.
         """
-        found = sample(session.mesh) if session.mesh.startswith(PREFIX) else None
-        path = found.path if found else Path(session.mesh)
-        stamp = _stamp(path)
-        return self._once(("subject", str(path), stamp), lambda: Subject(load_mesh(path), found))
+        found = None
+        if session.mesh.startswith(PREFIX):
+            found = self.once(("sample", session.mesh), lambda: sample(session.mesh))
+        source = source_of(found.path if found else Path(session.mesh))
+        volume = session.volume
+        key = ("subject", *((str(one), _stamp(one)) for one in source.files), _key(volume))
+        loaded = self.once(
+            key, lambda: Subject(load_surface(source, volume, self.progress), found, volume)
+        )
+        return self._repaired(loaded, session.repairs)
+
+    def _repaired(self, subject: Subject, repairs: tuple[Repair, ...]) -> Subject:
+        """Do repairs in order, each once: one more, or one less, is not to begin anew."""
+        if not repairs:
+            return subject
+
+        def mend() -> Subject:
+            from app.repairing import repaired
+
+            before = self._repaired(subject, repairs[:-1])
+            made = repaired(before.loaded, repairs[-1], self.progress)
+            return dataclasses.replace(subject, loaded=made, repairs=repairs)
+
+        return self.once(("repaired", subject.key, _key(repairs)), mend)
 
     def mm_per_unit(self, session: Session) -> float:
         """Return the size of a mesh unit.
@@ -103,7 +144,7 @@ class Pipeline:
         Parameters
         ----------
         session : Session
-            Says it, or leaves it to the sample; else it is 1.
+            Says it, or leaves it to the sample or the file; else it is 1.
 
         Returns
         -------
@@ -112,8 +153,7 @@ class Pipeline:
         """
         if session.mm_per_unit is not None:
             return session.mm_per_unit
-        found = self.subject(session).sample
-        return found.mm_per_unit if found else 1.0
+        return self.subject(session).mm_per_unit or 1.0
 
     def curvatures(self, session: Session) -> PrincipalCurvatures:
         """Return the curvature that the session shows or shades with.
@@ -133,7 +173,7 @@ class Pipeline:
         MeshError
             If no face has an area.
         """
-        found = self._once(
+        found = self.once(
             ("curvatures", *self._curvature_key(session)),
             lambda: self._estimate(session, self.progress),
         )
@@ -177,7 +217,7 @@ class Pipeline:
             return self.curvatures(one) if own else self._estimate(one, progress)
 
         key = ("peers", *(self._curvature_key(one) for one in sessions))
-        return self._once(key, lambda: consult(sessions, estimate, self.progress))
+        return self.once(key, lambda: consult(sessions, estimate, self.progress))
 
     def _estimate(self, session: Session, progress: Progress) -> PrincipalCurvatures:
         from lutcore.estimation import principal_curvatures
@@ -189,6 +229,27 @@ class Pipeline:
             progress=progress,
             **session.estimator.parameters,
         )
+
+    def strokes(self, session: Session) -> "Strokes | None":
+        """Return the principal directions as strokes on the surface.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, estimator and scale are used.
+
+        Returns
+        -------
+        Strokes or None
+            None where the estimator gives no directions.
+        """
+        from app.strokes import strokes_of
+
+        found = self.curvatures(session)
+        if not found.directed:
+            return None
+        key = ("strokes", *self._curvature_key(session))
+        return self.once(key, lambda: strokes_of(self.subject(session).mesh, found))
 
     def scale(self, session: Session) -> float | None:
         """Return the length that curvature is averaged over.
@@ -214,9 +275,7 @@ class Pipeline:
 
         subject = self.subject(session)
         glow = self.glow(session)
-        return self._once(
-            ("scale", subject.loaded.digest, glow), lambda: shading_scale(subject.mesh, glow)
-        )
+        return self.once(("scale", subject.key, glow), lambda: shading_scale(subject.mesh, glow))
 
     def glow(self, session: Session) -> float:
         """Return how far light carries the edge of a shadow, in the channel where it is most.
@@ -315,36 +374,69 @@ class Pipeline:
         ndarray, shape=(n, 3)
             Linear RGB; see `lutcore.shade`.
         """
-        from lutcore.lights import pack
-
-        lights = world_lights(session, axes)
-        key = (
-            "exitance",
-            *self._curvature_key(session),
-            # A scale that is given is one for all channels, one that is found is not.
-            session.scale is None,
-            _key((session.material, session.profile, model, self.mm_per_unit(session))),
-            session.shadows,
-            pack(lights).tobytes(),
-        )
-        return self._once(key, lambda: self._shade(session, model, axes))
+        key = ("exitance", session.shadows, *self._scene_key(session, model, axes))
+        return self.once(key, lambda: self._shade(session, model, axes))
 
     def _shade(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
         from dataclasses import replace
 
-        from lutcore.parameters import create
-        from lutcore.shading import AUTO, exitance, model_registry
+        from lutcore.shading import exitance
 
-        if model.name == AUTO:
-            from app.costs import measured
-
-            measured(self.progress)  # once on this machine, not in each process
+        settled = self.settled(session, model, axes)
         inputs = self.inputs(session, axes)
+        shares = self.visibility(session, settled.local, world_lights(session, axes))
+        if not settled.local or len(inputs.lights) == 0:
+            return exitance(settled, replace(inputs, visibility=shares))
+
+        surface = self._surface_key(session)
+
+        def lit(light: int) -> FloatArray:
+            key = (*surface, settled, inputs.lights[light].tobytes())
+            alone = replace(
+                inputs,
+                lights=inputs.lights[light : light + 1],
+                visibility=None if shares is None else shares[light : light + 1],
+            )
+            return self.once(("light", shares is None, *key), lambda: exitance(settled, alone))
+
+        # Light by light, so that where one is moved the others are there already.
+        first, *others = (lit(light) for light in range(len(inputs.lights)))
+        total = first
+        for other in others:
+            total = total + other
+        return total
+
+    def settled(self, session: Session, model: Method, axes: FloatArray) -> "ShadingModel":
+        """Return the model that a scene is shaded with, where `auto` leaves it open.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its own model and shadows is used.
+        model : Method
+            The shading model.
+        axes : ndarray, shape=(3, 3)
+            The camera's axes, for lights that move with it.
+
+        Returns
+        -------
+        ShadingModel
+            The model itself but for `auto`; see `app.settling` for its name.
+        """
+        from lutcore.parameters import create
+        from lutcore.shading import AUTO, ShadingModel, model_registry
+
         plugin = model_registry.get(model.name)
         chosen = create(plugin, f"shading model {model.name!r}", dict(model.parameters))
-        settled = chosen.settled(inputs)
-        shares = self.visibility(session, settled.local, world_lights(session, axes))
-        return exitance(settled, replace(inputs, visibility=shares))
+        if plugin.settled is ShadingModel.settled:
+            return chosen
+        if model.name != AUTO:
+            return chosen.settled(self.inputs(session, axes))
+        from app.costs import measured
+
+        measured(self.progress)  # once on this machine, not in each process
+        key = ("settled", *self._scene_key(session, model, axes))
+        return self.once(key, lambda: chosen.settled(self.inputs(session, axes)))
 
     def inputs(self, session: Session, axes: FloatArray) -> "ShadingInputs":
         """Return what shading models get, without cast shadows.
@@ -361,18 +453,24 @@ class Pipeline:
         ShadingInputs
             See `lutcore.shading`.
         """
+        from dataclasses import replace
+
+        from lutcore.lights import pack
         from lutcore.shading import shading_inputs
 
-        return shading_inputs(
-            self.subject(session).mesh,
-            self.curvatures(session),
-            self.material(session),
-            world_lights(session, axes),
-            self.mm_per_unit(session),
-            profile=self.profile(session),
-            progress=self.progress,
-            detail=self.detail(session),
+        unlit = self.once(
+            ("inputs", *self._surface_key(session)),
+            lambda: shading_inputs(
+                self.subject(session).mesh,
+                self.curvatures(session),
+                self.material(session),
+                (),
+                self.mm_per_unit(session),
+                profile=self.profile(session),
+                detail=self.detail(session),
+            ),
         )
+        return replace(unlit, lights=pack(world_lights(session, axes)), progress=self.progress)
 
     def detail(self, session: Session) -> "Detail | None":
         """Return the surface as the light of each channel sees it.
@@ -393,8 +491,8 @@ class Pipeline:
         from lutcore.detail import detail_seen
 
         subject, size = self.subject(session), self.mm_per_unit(session)
-        key = ("detail", subject.loaded.digest, _key((session.material, session.profile, size)))
-        return self._once(
+        key = ("detail", subject.key, _key((session.material, session.profile, size)))
+        return self.once(
             key,
             lambda: detail_seen(
                 subject.mesh,
@@ -406,7 +504,7 @@ class Pipeline:
         )
 
     def visibility(
-        self, session: Session, local: bool, lights: Sequence[Light]
+        self, session: Session, local: bool, lights: "Sequence[Light]"
     ) -> FloatArray | None:
         """Return which lights reach which vertices, as a model needs it.
 
@@ -435,27 +533,56 @@ class Pipeline:
             normals = self.curvatures(session).normals
             if not forecast(subject.mesh, normals, packed).needed:
                 return None
-        key = ("visibility", subject.loaded.digest, packed.tobytes())
-        seen = self._once(key, lambda: visibility(subject.mesh, packed, self.progress))
+        key = ("visibility", subject.key, packed.tobytes())
+        seen = self.once(key, lambda: visibility(subject.mesh, packed, self.progress))
         if not local:
             return seen
         table, size = self._table(session), self.mm_per_unit(session)
         glow = table.mean_free_path * table.psi[:, 0] / size
-        return self._once(
+        return self.once(
             (*key, glow.tobytes()), lambda: softened(seen, subject.mesh, glow, self.progress)
         )
 
-    def _curvature_key(self, session: Session) -> tuple[Hashable, ...]:
-        digest = self.subject(session).loaded.digest
-        return digest, _key((session.estimator, self.scale(session)))
+    def _scene_key(self, session: Session, model: Method, axes: FloatArray) -> tuple[Hashable, ...]:
+        from lutcore.lights import pack
 
-    def _once(self, key: Hashable, compute: Callable[[], T]) -> T:
-        if key not in self._kept:
-            self._kept[key] = compute()
-            while len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
-        self._kept.move_to_end(key)
-        return cast(T, self._kept[key])
+        lights = pack(world_lights(session, axes)).tobytes()
+        return *self._surface_key(session), _key(model), lights
+
+    def _surface_key(self, session: Session) -> tuple[Hashable, ...]:
+        return (
+            *self._curvature_key(session),
+            # A scale that is given is one for all channels, one that is found is not.
+            session.scale is None,
+            _key((session.material, session.profile, self.mm_per_unit(session))),
+        )
+
+    def _curvature_key(self, session: Session) -> tuple[Hashable, ...]:
+        return self.subject(session).key, _key((session.estimator, self.scale(session)))
+
+    def once(self, key: tuple[Hashable, ...], compute: Callable[[], T]) -> T:
+        """Return what a step gave, computed at most once while it is kept.
+
+        Parameters
+        ----------
+        key : tuple
+            The step's name, and all that its result depends on.
+        compute : callable
+            Gives the result.
+
+        Returns
+        -------
+        object
+            The result.
+        """
+        step = str(key[0])
+        kept = self._kept.setdefault(step, OrderedDict())
+        if key not in kept:
+            kept[key] = compute()
+            while len(kept) > _KEPT_OF.get(step, _KEPT):
+                kept.popitem(last=False)
+        kept.move_to_end(key)
+        return cast(T, kept[key])
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:

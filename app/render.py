@@ -1,7 +1,7 @@
 """From panels to pixels: the only way to a picture."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app import gl
 from app.backend import Backend, backend_of
+from app.offscreen import offscreen_window
 from app.scene import (
     ColorScale,
     Surface,
@@ -26,9 +27,13 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer, vtkRenderWindow
 
 Image = NDArray[np.uint8]
+Box = tuple[int, int, int, int]
+"""Left, bottom, width and height, pixels from the lower left corner."""
 Shapes = dict[tuple[int, Vector], "vtkPolyData"]
 _SAMPLES = 4
 _GRID_LETTERS = 1.25
+# Shares of a row that is full may sum to a little more than 1.
+_FULL = 1e-6
 STRIP = 0.045
 """Share of the picture's height below every surface, for its caption."""
 
@@ -45,11 +50,14 @@ class Panel:
         Its share of the picture's width; the shares of a row sum to 1.
     camera : Camera, optional
         Needed for a mesh.
+    tall : bool
+        Whether it goes over all rows; it is then the last one of the first row.
     """
 
     content: Surface | ColorScale
     width: float
     camera: Camera | None = None
+    tall: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,9 +76,7 @@ class Drawing:
     backend: Backend
 
 
-def draw(
-    panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int = 1
-) -> Drawing:
+def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int = 1) -> Drawing:
     """Draw panels side by side.
 
     Parameters
@@ -82,7 +88,7 @@ def draw(
     background : str
         A CSS colour.
     rows : int
-        Equally high rows, each with as many panels.
+        Equally high rows.
 
     Returns
     -------
@@ -97,22 +103,36 @@ def draw(
         If the background is no colour.
     """
     gl.require()
-    import vtkmodules.vtkRenderingFreeType
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
-    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+    made, wipes = _shot(panels, size, background, rows)
+    if wipes:
+        from app.wiping import composed
 
-    with gl.offscreen():
-        window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
+        # Each whole and by itself, so that either side is what its own picture shows.
+        other, _ = _shot([_second(panel) for panel in panels], size, background, rows)
+        image = composed(made.image, other.image, wipes, color(background))
+        made = Drawing(image, made.backend)
+    return made
+
+
+def _second(panel: Panel) -> Panel:
+    wipe = panel.content.wipe if isinstance(panel.content, Surface) else None
+    return panel if wipe is None else replace(panel, content=wipe.surface)
+
+
+def _shot(
+    panels: Sequence[Panel], size: tuple[int, int], background: str, rows: int
+) -> "tuple[Drawing, list[tuple[Box, float]]]":
+    """Draw panels, each surface as the first of its ways; tell where what is wiped lies."""
     # Four samples cost 1.6 times one even on a software renderer, once per picture.
-    window.SetMultiSamples(_SAMPLES)
-    window.SetSize(*size)
-    try:
-        fill(window, panels, size, background, rows)
+    with offscreen_window(size, _SAMPLES) as window:
+        drawn = fill(window, panels, size, background, rows)
         window.Render()
-        return Drawing(_grab(window, size), backend_of(window))
-    finally:
-        window.Finalize()
+        wipes = [
+            (one.box, one.panel.content.wipe.at)
+            for one in drawn
+            if isinstance(one.panel.content, Surface) and one.panel.content.wipe
+        ]
+        return Drawing(_grab(window, size), backend_of(window)), wipes
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +152,11 @@ class Drawn:
     panel: Panel
     renderer: "vtkRenderer"
     actor: "vtkActor | None"
+
+    @property
+    def box(self) -> Box:
+        """Where it lies in the window as it is now."""
+        return *self.renderer.GetOrigin(), *self.renderer.GetSize()
 
 
 def fill(
@@ -171,16 +196,16 @@ def fill(
     """
     shade = color(background)
     shapes: Shapes = {}
-    across = len(panels) // rows
     # A grid is looked at as a whole, so from farther away.
     height = size[1] * (_GRID_LETTERS if rows > 1 else 1.0)
     letters = _caption_letters(panels, (size[0], height))
     made = []
-    for index, panel in enumerate(panels):
-        row, column = divmod(index, across)
-        left = sum(other.width for other in panels[index - column : index])
-        bottom = 1.0 - (row + 1) / rows
-        right, top = left + panel.width, bottom + 1.0 / rows
+    left, row = 0.0, 0
+    for panel in panels:
+        if left + panel.width > 1.0 + _FULL:
+            left, row = 0.0, row + 1
+        bottom = 0.0 if panel.tall else 1.0 - (row + 1) / rows
+        right, top = left + panel.width, 1.0 if panel.tall else bottom + 1.0 / rows
         strip = bottom + STRIP if isinstance(panel.content, Surface) else bottom
         renderer = _add(window, shade, (left, strip, right, top))
         actor = None
@@ -191,6 +216,7 @@ def fill(
             below = _add(window, shade, (left, bottom, right, strip))
             fill_caption(below, panel.content.caption, letters)
         made.append(Drawn(panel, renderer, actor))
+        left = right
     return made
 
 

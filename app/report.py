@@ -145,7 +145,7 @@ def content(session: Session, pipeline: Pipeline, found: Findings, command: str)
         faces=len(subject.mesh.faces),
         diagonal=health.diagonal * size,
         mm_per_unit=size,
-        assumed=session.mm_per_unit is None and subject.sample is None,
+        assumed=session.mm_per_unit is None and subject.mm_per_unit is None,
         summary=document.strip().partition("\n")[0],
         remarks=(*subject.warnings, *health.remarks(size)),
         found=found,

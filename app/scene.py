@@ -5,6 +5,7 @@ The raw VTK classes are used because importing them takes a third of the time of
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +22,20 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextProperty,
 )
 
+from app import wipe_shader
 from app.session import Camera, Vector
+from app.texturing import Coat, coated, relight
 from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 
+if TYPE_CHECKING:
+    from app.strokes import Strokes
+
 _FONT_SHARE = 0.021
 _LEAST_FONT = 7
+# Nothing nearer than this share of the distance to what is looked at is drawn where the scene is
+# too deep for all of it; the depth buffer then still tells parts in 100,000 there.
+_NEAREST = 0.02
 # Width of a letter over the font's size, on the safe side.
 _LETTER = 0.56
 # As wide as a bar with the numbers beside it.
@@ -64,7 +73,7 @@ class Surface:
     normals : ndarray, shape=(n, 3)
         Used only where `lit`.
     rgb : ndarray of uint8, shape=(n, 3), optional
-        Colours as they go to the display.
+        Colours as they go to the display; shown instead of `values` where there are both.
     values : ndarray, shape=(n,), optional
         Scalars, shown through `scale`.
     scale : ColorScale, optional
@@ -73,6 +82,12 @@ class Surface:
         Whether a soft light at the camera shows the shape; else colours are shown as they are.
     caption : str
         One line below the surface.
+    wipe : Wipe, optional
+        What is shown instead on the right.
+    strokes : Strokes, optional
+        What is drawn on it.
+    coat : Coat, optional
+        A texture with its light, drawn in place of `rgb`: that is then what is seen at vertices.
     """
 
     mesh: TriangleMesh
@@ -82,6 +97,25 @@ class Surface:
     scale: ColorScale | None = None
     lit: bool = False
     caption: str = ""
+    wipe: "Wipe | None" = None
+    strokes: "Strokes | None" = None
+    coat: Coat | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Wipe:
+    """The other of two ways to show one surface.
+
+    Parameters
+    ----------
+    surface : Surface
+        The same mesh, and as the first either `rgb` or `values` with the same scale.
+    at : float
+        Where it begins, as a share of the surface's width in the picture: 0 shows it alone.
+    """
+
+    surface: Surface
+    at: float
 
 
 def color(text: str) -> tuple[float, float, float]:
@@ -166,22 +200,74 @@ def fill_surface(
     vtkActor
         What was put there.
     """
+    actor = actor_of(surface, shape)
+    if surface.lit:
+        _light(renderer, actor)
+    else:
+        actor.GetProperty().LightingOff()
+    renderer.AddActor(actor)
+    if surface.strokes is not None:
+        from app.stroke_actor import stroke_actor
+
+        renderer.AddActor(stroke_actor(surface.strokes, origin))
+    aim(renderer, camera, origin)
+    return actor
+
+
+def actor_of(surface: Surface, shape: vtkPolyData) -> vtkActor:
+    """Return a surface as VTK draws it.
+
+    Parameters
+    ----------
+    surface : Surface
+        What to draw.
+    shape : vtkPolyData
+        Its geometry; see `shape_of`.
+
+    Returns
+    -------
+    vtkActor
+        In no renderer yet.
+    """
+    if surface.coat is not None:
+        return coated(surface.coat, shape, _beyond(surface))
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(_poly_data(surface, shape))
-    if surface.scale is not None:
+    if surface.rgb is None and surface.scale is not None:
         mapper.SetLookupTable(_lookup(surface.scale))
         mapper.UseLookupTableScalarRangeOn()
         # Colours of the values between vertices, not mixtures of the vertices' colours.
         mapper.InterpolateScalarsBeforeMappingOn()
     actor = vtkActor()
     actor.SetMapper(mapper)
-    if surface.lit:
-        _light(renderer, actor)
-    else:
-        actor.GetProperty().LightingOff()
-    renderer.AddActor(actor)
-    aim(renderer, camera, origin)
+    if surface.wipe is not None:
+        wipe_shader.attach(actor, surface.wipe.surface)
     return actor
+
+
+def _beyond(surface: Surface) -> Coat | None:
+    return None if surface.wipe is None else surface.wipe.surface.coat
+
+
+def recolor(actor: vtkActor, surface: Surface) -> None:
+    """Give a surface that is drawn other colours; its geometry stays where it is.
+
+    Parameters
+    ----------
+    actor : vtkActor
+        Of `actor_of` or `fill_surface`, for a surface of the same kind.
+    surface : Surface
+        The same mesh in its new colours.
+    """
+    if surface.coat is not None:
+        relight(actor, surface.coat, _beyond(surface))
+        return
+    mapper = actor.GetMapper()
+    _set_scalars(mapper.GetInput(), surface)
+    if surface.rgb is None and surface.scale is not None:
+        mapper.SetLookupTable(_lookup(surface.scale))
+    if surface.wipe is not None:
+        wipe_shader.recolor(actor, surface.wipe.surface)
 
 
 def fill_caption(renderer: vtkRenderer, caption: str, size: int) -> None:
@@ -251,13 +337,17 @@ def _new_label_format() -> bool:
 def _poly_data(surface: Surface, shape: vtkPolyData) -> vtkPolyData:
     data = vtkPolyData()
     data.ShallowCopy(shape)
-    shown = surface.rgb if surface.rgb is not None else surface.values
-    if shown is not None:
-        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=True))
+    _set_scalars(data, surface)
     if surface.lit:
         normals = numpy_to_vtk(surface.normals.astype(np.float32), deep=True)
         data.GetPointData().SetNormals(normals)
     return data
+
+
+def _set_scalars(data: vtkPolyData, surface: Surface) -> None:
+    shown = surface.rgb if surface.rgb is not None else surface.values
+    if shown is not None:
+        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=True))
 
 
 def _lookup(scale: ColorScale) -> vtkLookupTable:
@@ -300,6 +390,11 @@ def aim(renderer: vtkRenderer, camera: Camera, origin: Vector) -> None:
     if camera.height is not None:
         view.SetParallelScale(camera.height / 2.0)
     renderer.ResetCameraClippingRange()
+    near, far = view.GetClippingRange()
+    if near <= renderer.GetNearClippingPlaneTolerance() * far * 1.001:
+        # Stray parts far behind drew the near plane away from the camera, past what is looked at.
+        near = min(near, _NEAREST * view.GetDistance())
+        view.SetClippingRange(near, far)
 
 
 def font_size(words: str, pixels: tuple[float, float]) -> int:

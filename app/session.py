@@ -12,14 +12,17 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+from app.repairs import KINDS
 from app.writing import write_bytes
 from lutcore.errors import CurvelightError, ParameterError
 
 Vector = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
+Percent = Annotated[float, Meta(ge=0.0, le=100.0)]
 Pixels = Annotated[int, Meta(ge=16, le=16384)]
 Frame = Literal["camera", "world"]
+RepairKind = Literal["merge", "islands", "manifold", "holes", "orient", "decimate"]
 
 
 class SessionError(CurvelightError):
@@ -89,6 +92,44 @@ class Method(_Part, frozen=True):
         return f"{self.name} ({', '.join(values)})" if self.parameters else self.name
 
 
+class Volume(_Part, frozen=True):
+    """How a volume scan becomes a surface; a mesh takes no notice of it.
+
+    `level` is the value of the voxels that the surface lies at, None takes Otsu's; `smoothing` is
+    the sigma of a Gaussian in voxels, applied before.
+    """
+
+    level: float | None = None
+    smoothing: Annotated[float, Meta(ge=0.0, le=50.0)] = 0.0
+
+
+class Repair(_Part, frozen=True):
+    """A change to a mesh before anything is computed; see `app.repairs.KINDS`.
+
+    `value` is what the kind is set by, in the unit that it says; None takes its default.
+    """
+
+    kind: RepairKind
+    value: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        try:
+            if self.kind not in KINDS:
+                raise ParameterError.unknown("repair", self.kind, KINDS)
+            KINDS[self.kind].check(self.kind, self.value)
+        except ParameterError as error:  # msgspec makes a message of a file out of a ValueError
+            raise ValueError(str(error)) from None
+
+    @property
+    def words(self) -> str:
+        """What is done, with its number and unit."""
+        kind = KINDS[self.kind]
+        number = kind.check(self.kind, self.value)
+        how = f", {number:g} {kind.value.unit}" if kind.value else ""
+        return f"{kind.words.lower()}{how}"
+
+
 class Camera(_Part, frozen=True):
     """Where the picture is taken from, in world coordinates.
 
@@ -105,6 +146,7 @@ class Camera(_Part, frozen=True):
 
 View = Literal["shade", "curvature", "figure", "compare"]
 Shadows = Literal["off", "on", "auto"]
+ComparedBy = Literal["model", "estimator", "material"]
 Quantity = Literal[
     "curvedness",
     "k1",
@@ -128,19 +170,29 @@ FIGURE_LIGHTS = (
 class Session(_Part, frozen=True):
     """Everything that a picture depends on.
 
-    `mesh` is a path or ``sample:NAME``; `mm_per_unit` None takes the sample's own scale, else
-    1 mm; `scale` is the length in mesh units that curvature is averaged over, None chooses it;
+    `mesh` is a path or ``sample:NAME``; `volume` says how it becomes a surface if it is a volume;
+    `repairs` are done to it in order, before anything else;
+    `mm_per_unit` None takes the sample's or the file's own scale, else 1 mm;
+    `scale` is the length in mesh units that curvature is averaged over, None chooses it;
     `profile` is how light spreads in the material, the same for all models that are compared;
     `shadows` says whether the surface casts shadows on itself, ``auto`` where they change much;
+    `compared_by` says what `compared` names: shading models, estimators, whose `quantity` is
+    shown, or materials; `wipe` shows two on one surface, the first left of this share of the
+    surface's width; `difference` adds how far the others are from the first;
     `peers` are the estimators whose disagreement is measured; `quantity` ``all`` draws each in a
     panel of its own;
     `camera` is a view name (see `app.camera`) or a camera; `range` None takes a robust one (see
     `app.shown.robust_range`), `symmetric` makes it as wide below zero as above, `flip` turns the
     colour map round; `colormap` None is the paper's for curvature and magma for differences;
+    `percentiles` are the shares of the values that a robust range leaves below its ends, `fade`
+    turns colours grey where the curvature is below its error, `strokes` draws the principal
+    directions over curvature;
     `exposure` None brings the brightest parts near white.
     """
 
     mesh: str = "sample:marble-face-raw"
+    volume: Volume = Volume()
+    repairs: tuple[Repair, ...] = ()
     mm_per_unit: Positive | None = None
     view: View = "shade"
     material: str | Substance = "skin1"
@@ -149,6 +201,8 @@ class Session(_Part, frozen=True):
     shadows: Shadows = "off"
     model: Method = Method("curvature-lut")
     compared: tuple[Method, ...] = ()
+    compared_by: ComparedBy = "model"
+    wipe: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None
     difference: bool = False
     estimator: Method = Method("auto")
     scale: Positive | None = None
@@ -158,6 +212,9 @@ class Session(_Part, frozen=True):
     range: tuple[float, float] | None = None
     symmetric: bool = False
     flip: bool = False
+    percentiles: tuple[Percent, Percent] = (5.0, 95.0)
+    fade: bool = False
+    strokes: bool = False
     flat: bool = False
     albedo: bool = True
     exposure: Positive | None = None
@@ -170,6 +227,10 @@ class Session(_Part, frozen=True):
         super().__post_init__()
         if self.range is not None and not self.range[0] < self.range[1]:
             raise ValueError(f"range = {self.range!r}: the first must be below the second")
+        if not self.percentiles[0] < self.percentiles[1]:
+            raise ValueError(
+                f"percentiles = {self.percentiles!r}: the first must be below the second"
+            )
 
 
 def to_json(session: Session) -> bytes:
@@ -289,9 +350,32 @@ def replaced(session: Session, **changes: Any) -> Session:
         If a value cannot be.
     """
     given = {name: value for name, value in changes.items() if value is not None}
+    return checked(session, **given)
+
+
+def checked(session: Session, **changes: Any) -> Session:
+    """Return a session with some fields changed, None included, checked as a file would be.
+
+    Parameters
+    ----------
+    session : Session
+        Where to start from.
+    **changes : object
+        Fields to change.
+
+    Returns
+    -------
+    Session
+        The changed session.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be.
+    """
     try:
         return msgspec.convert(
-            msgspec.to_builtins(msgspec.structs.replace(session, **given)), Session
+            msgspec.to_builtins(msgspec.structs.replace(session, **changes)), Session
         )
     except (msgspec.MsgspecError, ValueError) as error:
         raise ParameterError(str(error)) from None

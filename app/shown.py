@@ -11,7 +11,8 @@ from lutcore.arrays import BoolArray, FloatArray
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import ParameterError
 
-_ROBUST = (5.0, 95.0)
+ROBUST = (5.0, 95.0)
+"""Percentiles at the ends of a robust range, where nothing else is said."""
 # From the median absolute deviation to the sigma of a normal distribution.
 _SIGMA = 1.4826
 # If the error bars leave fewer values than this share, they say nothing of the rest.
@@ -100,7 +101,7 @@ def shown(session: Session, pipeline: Pipeline, name: str) -> Shown:
     # Only asked for by name does a quantity that is never negative get a range that is.
     symmetric = session.symmetric and (quantity.signed or session.quantity == name)
     counted = trusted(curvatures) if quantity.measured else curvatures.estimated
-    low, high = robust_range(values[counted], symmetric)
+    low, high = robust_range(values[counted], symmetric, session.percentiles)
     return Shown(quantity, values, low, high)
 
 
@@ -138,7 +139,9 @@ def _spread(values: FloatArray) -> float:
     return _SIGMA * float(np.median(np.abs(values - np.median(values))))
 
 
-def robust_range(values: FloatArray, symmetric: bool = False) -> tuple[float, float]:
+def robust_range(
+    values: FloatArray, symmetric: bool = False, percentiles: tuple[float, float] = ROBUST
+) -> tuple[float, float]:
     """Return the range that shows most of the values.
 
     Parameters
@@ -147,17 +150,19 @@ def robust_range(values: FloatArray, symmetric: bool = False) -> tuple[float, fl
         Infinite ones are left out.
     symmetric : bool
         Whether the range is as wide below zero as above.
+    percentiles : tuple of 2 floats
+        Of the values, at its ends.
 
     Returns
     -------
     tuple of 2 floats
-        The 5th and the 95th percentile, at least a hundredth of the larger apart, lest rounding
+        The percentiles, at least a hundredth of the larger apart, lest rounding
         errors fill the whole colour map; 0 and 1 where all is 0.
     """
     finite = values[np.isfinite(values)]
     if not finite.any():
         return 0.0, 1.0
-    low, high = (float(end) for end in np.percentile(finite, _ROBUST))
+    low, high = (float(end) for end in np.percentile(finite, percentiles))
     if symmetric:
         low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
     # Where all is alike the range opens upwards, so that nothing looks large.

@@ -1,11 +1,17 @@
 """Encoding of linear light for display: the only place where values stop being linear."""
 
+from functools import lru_cache
+
 import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
+
+# No byte is passed over within one part: sRGB rises by 0.8 bytes in it where it is steepest.
+_PARTS = 4096
+_HALVINGS = 70  # of 0 to 1: doubles near the least threshold, 1.5e-4, are 2^-65 apart
 
 
 def srgb_decode(encoded: FloatArray) -> FloatArray:
@@ -89,6 +95,63 @@ def srgb_bytes(linear: FloatArray, exposure: float) -> NDArray[np.uint8]:
     for i in prange(count):
         for channel in range(3):
             encoded[i, channel] = np.uint8(255.0 * _encode(exposure * linear[i, channel]) + 0.5)
+    return encoded
+
+
+def product_bytes(light: FloatArray, factor: FloatArray, exposure: float) -> NDArray[np.uint8]:
+    """Return `srgb_bytes` of a product, several times as fast and the same to the last bit.
+
+    Parameters
+    ----------
+    light : ndarray, shape=(n, 3)
+        Linear values.
+    factor : ndarray, shape=(n, 1) or (n, 3)
+        What they are multiplied by, for all channels or for each.
+    exposure : float
+        Factor on the product, 0 or more.
+
+    Returns
+    -------
+    ndarray of uint8, shape=(n, 3)
+        sRGB bytes, rounded to nearest.
+    """
+    return _product_bytes(light, factor, float(exposure), *_steps())
+
+
+@lru_cache(maxsize=1)
+def _steps() -> tuple[FloatArray, NDArray[np.uint8]]:
+    """Return the least value of each byte, and the byte at the start of each of equal parts."""
+    least = np.full(257, np.inf)
+    least[0] = 0.0
+    low, high = np.zeros(255), np.ones(255)
+    # Halved until no double lies between: the very values at which `srgb_bytes` steps.
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        reached = srgb_bytes(middle.reshape(-1, 3), 1.0).reshape(-1) >= np.arange(1, 256)
+        low, high = np.where(reached, low, middle), np.where(reached, middle, high)
+    least[1:256] = high
+    starts = np.searchsorted(least, np.arange(_PARTS + 1) / _PARTS, side="right") - 1
+    return least, starts.astype(np.uint8)
+
+
+@compiled(parallel=True)
+def _product_bytes(
+    light: FloatArray,
+    factor: FloatArray,
+    exposure: float,
+    least: FloatArray,
+    starts: NDArray[np.uint8],
+) -> NDArray[np.uint8]:
+    last = factor.shape[1] - 1
+    encoded = np.empty(light.shape, dtype=np.uint8)
+    for i in prange(len(light)):
+        for channel in range(3):
+            value = exposure * (light[i, channel] * factor[i, min(channel, last)])
+            value = min(max(value, 0.0), 1.0)
+            byte = int(starts[int(value * _PARTS)])
+            while value >= least[byte + 1]:
+                byte += 1
+            encoded[i, channel] = byte
     return encoded
 
 

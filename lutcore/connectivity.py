@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lutcore.arrays import AnyArray
+from lutcore.arrays import AnyArray, BoolArray
 from lutcore.mesh import TriangleMesh
 from lutcore.topology import Edges, components, edges, nonmanifold_vertices
 
@@ -76,7 +76,7 @@ def connectivity(mesh: TriangleMesh) -> Connectivity:
         nonmanifold_vertices=nonmanifold_vertices(mesh.faces, table, count),
         duplicate_faces=_duplicates(mesh.faces, count),
         flipped_edges=int(np.count_nonzero(table.flipped)),
-        inside_out_islands=_inside_out(mesh, table, label, islands),
+        inside_out_islands=int(np.count_nonzero(_inside_out(mesh, table, label, islands))),
         typical_edge=float(np.median(np.sqrt(np.einsum("ij,ij->i", span, span)))),
     )
 
@@ -97,7 +97,27 @@ def _duplicates(faces: AnyArray, vertex_count: int) -> int:
     return int(np.count_nonzero((pair[1:] == pair[:-1]) & (high[1:] == high[:-1])))
 
 
-def _inside_out(mesh: TriangleMesh, table: Edges, label: AnyArray, islands: int) -> int:
+def inside_out_faces(mesh: TriangleMesh) -> BoolArray:
+    """Tell which faces belong to closed parts that are inside out.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        A mesh as for `connectivity`.
+
+    Returns
+    -------
+    ndarray of bool, shape=(m,)
+        True where a face's normal points inwards.
+    """
+    count = len(mesh.vertices)
+    table = edges(mesh.faces, count)
+    islands, label = components(table.ends, count)
+    found: BoolArray = _inside_out(mesh, table, label, islands)[label[mesh.faces[:, 0]]]
+    return found
+
+
+def _inside_out(mesh: TriangleMesh, table: Edges, label: AnyArray, islands: int) -> BoolArray:
     closed = np.ones(islands, dtype=bool)
     closed[label[table.ends[(table.count != 2) | table.flipped, 0]]] = False
     a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
@@ -107,4 +127,5 @@ def _inside_out(mesh: TriangleMesh, table: Edges, label: AnyArray, islands: int)
     # A part far from the common centre cancels large terms; below this share of them the sign
     # is rounding.
     scale = float(np.abs(mesh.vertices).max()) ** 3 * len(mesh.faces)
-    return int(np.count_nonzero(closed & (volume < -1e-15 * scale)))
+    found: BoolArray = closed & (volume < -1e-15 * scale)
+    return found

@@ -105,10 +105,25 @@ class MeshHealth(Connectivity):
         )
         return [line for count, line in counted if count] + self._size_remarks(mm_per_unit)
 
+    def plausible(self, mm_per_unit: float) -> bool:
+        """Tell whether a scanned object may be that large.
+
+        Parameters
+        ----------
+        mm_per_unit : float
+            Size of a mesh unit.
+
+        Returns
+        -------
+        bool
+            Whether its diagonal is that of something between a tooth and a statue.
+        """
+        return _SMALLEST_MM <= self.diagonal * mm_per_unit <= _LARGEST_MM
+
     def _size_remarks(self, mm_per_unit: float) -> list[str]:
         lines = []
         diagonal = self.diagonal * mm_per_unit
-        if not _SMALLEST_MM <= diagonal <= _LARGEST_MM:
+        if not self.plausible(mm_per_unit):
             guess = "metres or inches" if diagonal < _SMALLEST_MM else "micrometres"
             lines.append(
                 f"its diagonal is {diagonal:.3g} mm: if its unit is, say, {guess}, give the "

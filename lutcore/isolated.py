@@ -75,11 +75,11 @@ def run_isolated(
     """
     job = json.dumps({"function": function, "memory": memory})
     payload = pack({**arrays, JOB: np.array(job)})
-    child = _idle_or_new() if keep else _Child()
+    child = _idle_or_new() if keep else Child()
     answer = child.call(payload, label, seconds, progress)
     if answer is None and child.calls > 1:
         child.stop()
-        child = _Child()
+        child = Child()
         answer = child.call(payload, label, seconds, progress)
     if answer is None:
         raise IsolatedError(f"{label} {child.last_words()}")
@@ -93,28 +93,69 @@ def run_isolated(
     return found
 
 
-class _Child:
-    """One child process; its pipes carry a job to it and the answer back."""
+class Child:
+    """One child process; its pipes carry a job to it and the answer back.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    module : str
+        What it runs: a loop over `lutcore.isolated_child.receive` and ``send``.
+    environment : mapping of str to str, optional
+        Variables that it gets beside those of this process.
+    """
+
+    def __init__(
+        self,
+        module: str = "lutcore.isolated_child",
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
         # -P, so that a folder of our packages' names where the user stands is not taken for them.
-        command = [sys.executable, "-P", "-m", "lutcore.isolated_child"]
+        command = [sys.executable, "-P", "-m", module]
         paths = [str(_ROOT), *(entry for entry in sys.path if entry)]
         # Each thread and each arena of the allocator reserves address space, which is limited.
         few = {"OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
         self.calls = 0
         self._process = subprocess.Popen(  # noqa: S603  # our own interpreter and module
             command,
-            env=os.environ | few | {"PYTHONPATH": os.pathsep.join(paths)},
+            env=os.environ | few | dict(environment or {}) | {"PYTHONPATH": os.pathsep.join(paths)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
 
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
     def call(
         self, payload: memoryview, label: str, seconds: float, progress: Progress
     ) -> bytes | None:
-        """Return the answer, or None if the process ended without one."""
+        """Hand a job over and wait for its answer.
+
+        Parameters
+        ----------
+        payload : memoryview
+            The job.
+        label : str
+            Who does the work, in words, for messages.
+        seconds : float
+            Time it may take.
+        progress : callable
+            Told now and then that the work goes on; if it raises, the process is ended.
+
+        Returns
+        -------
+        bytes or None
+            The answer; None if the process ended without one.
+
+        Raises
+        ------
+        IsolatedError
+            If it takes longer.
+        CancelledError
+            If `progress` asked to stop.
+        """
         self.calls += 1
         answers: list[bytes | None] = []
         worker = threading.Thread(target=self._exchange, args=(payload, answers), daemon=True)
@@ -142,7 +183,13 @@ class _Child:
             return
 
     def last_words(self) -> str:
-        """Return what became of a process that ended without an answer."""
+        """Say what became of a process that ended without an answer.
+
+        Returns
+        -------
+        str
+            How it ended, to follow the name of who did the work.
+        """
         code = self._process.wait()
         self.stop()
         if code < 0:
@@ -167,14 +214,14 @@ def _close(pipe: io.BufferedIOBase | object) -> None:
         return
 
 
-_idle: list[_Child] = []
+_idle: list[Child] = []
 
 
-def _idle_or_new() -> _Child:
+def _idle_or_new() -> Child:
     try:
         return _idle.pop()  # asking first whether there is one would race with other threads
     except IndexError:
-        return _Child()
+        return Child()
 
 
 @atexit.register

@@ -178,6 +178,25 @@ def pack(lights: Sequence[Light]) -> FloatArray:
 
 
 @compiled()
+def is_directional(lights: FloatArray, index: int) -> bool:
+    """Tell whether a light looks the same from everywhere, for compiled loops.
+
+    Parameters
+    ----------
+    lights : ndarray, shape=(l, LIGHT_FIELDS)
+        What `pack` returned.
+    index : int
+        Which light.
+
+    Returns
+    -------
+    bool
+        True for a directional light.
+    """
+    return bool(lights[index, 0] == _DIRECTIONAL)
+
+
+@compiled()
 def light_at(
     lights: FloatArray, index: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:

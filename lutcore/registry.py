@@ -92,6 +92,29 @@ class Registry(Generic[T]):
             raise ParameterError(f"the plug-in found for {self.kind} {name!r} does not register it")
         return self._loaded[name]
 
+    def name_of(self, plugin: type[T]) -> str:
+        """Return the name of a plug-in that `get` returned.
+
+        Parameters
+        ----------
+        plugin : type
+            Its class.
+
+        Returns
+        -------
+        str
+            The name it is registered under.
+
+        Raises
+        ------
+        ParameterError
+            If it is not.
+        """
+        for name, loaded in self._loaded.items():
+            if loaded is plugin:
+                return name
+        raise ParameterError(f"no {self.kind} is registered as {plugin.__name__}")
+
     def _built_in(self) -> set[str]:
         spec = find_spec(self._package)
         paths = spec.submodule_search_locations if spec else None

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numba import prange
 from numpy.typing import ArrayLike
 
 from lutcore.arrays import FloatArray, IndexArray, finite
 from lutcore.baking import bake, resolved
+from lutcore.compiled import compiled
 from lutcore.convexity import convex_part
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.detail import Detail
@@ -112,6 +114,25 @@ class ShadingModel(Parameters, ABC):
         ndarray, shape=(n, 3)
             Radiant exitance, linear RGB, before the exit Fresnel factor.
         """
+
+    def shade_channel(self, inputs: ShadingInputs, channel: int) -> FloatArray:
+        """Compute what leaves the surface in one channel, for a surface that each sees otherwise.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            Geometry as light of this channel sees it.
+        channel : int
+            0, 1 or 2.
+
+        Returns
+        -------
+        ndarray, shape=(n,)
+            What `shade` gives for it, to the last bit. A model may have a shorter way.
+        """
+        lights = inputs.lights.copy()
+        lights[:, 8:] *= np.arange(3) == channel  # models need not look the others up
+        return self.shade(replace(inputs, lights=lights))[:, channel]
 
     def predicted_error(self, scene: "Scene") -> FloatArray | None:
         """Predict how wrong the model will be, without running it.
@@ -343,8 +364,16 @@ def exitance(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
         for light, share in enumerate(inputs.visibility):
             alone = replace(inputs, lights=inputs.lights[light : light + 1], visibility=None)
             out += _by_channel(model, alone) * (share if share.ndim == 2 else share[:, None])
-    out[np.einsum("ij,ij->i", inputs.normals, inputs.normals) == 0.0] = 0.0
+    _darken(out, inputs.normals)
     return out
+
+
+@compiled(parallel=True)
+def _darken(out: FloatArray, normals: FloatArray) -> None:
+    """Set to 0 where there is no normal."""
+    for i in prange(len(out)):
+        if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
+            out[i] = 0.0
 
 
 def bared(inputs: ShadingInputs) -> ShadingInputs:
@@ -371,10 +400,8 @@ def _by_channel(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
         return model.shade(inputs)
     out = np.empty(inputs.points.shape)
     for channel, (normals, shape) in enumerate(zip(seen.normals, seen.shape, strict=True)):
-        lights = inputs.lights.copy()
-        lights[:, 8:] *= np.arange(3) == channel  # models need not look the others up
-        alone = replace(inputs, normals=normals, shape=shape, lights=lights, detail=None)
-        out[:, channel] = model.shade(alone)[:, channel]
+        alone = replace(inputs, normals=normals, shape=shape, detail=None)
+        out[:, channel] = model.shade_channel(alone, channel)
     return out
 
 

@@ -89,12 +89,41 @@ def weld(mesh: TriangleMesh) -> Welded:
     -------
     Welded
         The ready mesh and the map back to the input's vertices.
+
+    Notes
+    -----
+    A part some 1e15 times smaller than the mesh has an area of its own, and none beside the mesh's
+    middle, from which estimators see it: there its vertices round to the same places. Then what
+    centring brought together is merged too, and its faces are dropped.
     """
+    welded, lowest = _merged(mesh)
+    while welded.mesh is not None and lowest < _rounding(welded.mesh.vertices):
+        faces = len(welded.mesh.faces)
+        second, lowest = _merged(welded.mesh)
+        welded = _chained(welded, second)
+        if second.mesh is None or len(second.mesh.faces) == faces:
+            break
+    return welded
+
+
+def _rounding(centred: FloatArray) -> float:
+    """Return how much lower a triangle may have become by centring: a bound, mesh units."""
+    return float(16.0 * np.finfo(np.float64).eps * max(centred.max(), -centred.min()))
+
+
+def _chained(first: Welded, second: Welded) -> Welded:
+    """Return two steps as one."""
+    index = np.where(first.index >= 0, second.index[first.index], np.int32(-1))
+    return Welded(second.mesh, index, first.moved or second.moved)
+
+
+def _merged(mesh: TriangleMesh) -> tuple[Welded, float]:
+    """Merge once; also return the least height of a triangle that is left."""
     same = _first_of_same(mesh.vertices)
-    good, used = _good_faces(mesh.vertices, mesh.faces, same)
+    good, used, lowest = _good_faces(mesh.vertices, mesh.faces, same)
     kept = int(np.count_nonzero(used))
     if kept == 0:
-        return Welded(None, np.full(len(mesh.vertices), -1, np.int32), True)
+        return Welded(None, np.full(len(mesh.vertices), -1, np.int32), True), lowest
     if kept == len(used):
         index = np.arange(kept, dtype=np.int32)
         points, faces = mesh.vertices, mesh.faces
@@ -109,7 +138,8 @@ def weld(mesh: TriangleMesh) -> Welded:
         faces = index[mesh.faces]
     if not good.all():
         faces = faces[good]
-    return Welded(TriangleMesh.trusted(_centred(points), faces), index, kept != len(used))
+    ready = TriangleMesh.trusted(_centred(points), faces)
+    return Welded(ready, index, kept != len(used)), lowest
 
 
 @compiled(parallel=True)
@@ -171,31 +201,50 @@ def _first_of_same(vertices: FloatArray) -> IndexArray:
     return first
 
 
+@compiled()
+def _height(vertices: FloatArray, a: int, b: int, c: int) -> float:
+    """Return 1 to 3.5 times a triangle's height over its longest edge; 0 where that is rounding.
+
+    Worked out at unit size, so that no square is 0 or infinite.
+    """
+    ux = vertices[b, 0] - vertices[a, 0]
+    uy = vertices[b, 1] - vertices[a, 1]
+    uz = vertices[b, 2] - vertices[a, 2]
+    vx = vertices[c, 0] - vertices[a, 0]
+    vy = vertices[c, 1] - vertices[a, 1]
+    vz = vertices[c, 2] - vertices[a, 2]
+    size = max(abs(ux), abs(uy), abs(uz), abs(vx), abs(vy), abs(vz))
+    unit = 1.0 / size if size > 1e-300 else 0.0
+    ux, uy, uz = ux * unit, uy * unit, uz * unit
+    vx, vy, vz = vx * unit, vy * unit, vz * unit
+    wx, wy, wz = vx - ux, vy - uy, vz - uz
+    longest = max(
+        ux * ux + uy * uy + uz * uz,
+        vx * vx + vy * vy + vz * vz,
+        wx * wx + wy * wy + wz * wz,
+    )
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    area = np.sqrt(x * x + y * y + z * z)
+    if not area > _THINNEST * longest:
+        return 0.0
+    # The longest edge is 1 to 3.5 times `size`.
+    return size * area
+
+
 @compiled(parallel=True)
 def _good_faces(
     vertices: FloatArray, faces: IndexArray, same: IndexArray
-) -> tuple[BoolArray, BoolArray]:
-    """Return which faces have an area, and which vertices those use."""
+) -> tuple[BoolArray, BoolArray, float]:
+    """Return which faces have an area, which vertices those use, and the least of their heights."""
+    lowest = np.inf
     good = np.empty(len(faces), np.bool_)
     for face in prange(len(faces)):
-        a, b, c = same[faces[face, 0]], same[faces[face, 1]], same[faces[face, 2]]
-        ux = vertices[b, 0] - vertices[a, 0]
-        uy = vertices[b, 1] - vertices[a, 1]
-        uz = vertices[b, 2] - vertices[a, 2]
-        vx = vertices[c, 0] - vertices[a, 0]
-        vy = vertices[c, 1] - vertices[a, 1]
-        vz = vertices[c, 2] - vertices[a, 2]
-        wx, wy, wz = vx - ux, vy - uy, vz - uz
-        longest = max(
-            ux * ux + uy * uy + uz * uz,
-            vx * vx + vy * vy + vz * vz,
-            wx * wx + wy * wy + wz * wz,
-        )
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        good[face] = np.sqrt(x * x + y * y + z * z) > _THINNEST * longest
+        height = _height(vertices, same[faces[face, 0]], same[faces[face, 1]], same[faces[face, 2]])
+        good[face] = height > 0.0
+        lowest = min(lowest, height if height > 0.0 else np.inf)
     used = np.zeros(len(vertices), np.bool_)
     for face in range(len(faces)):
         if good[face]:
             for j in range(3):
                 used[same[faces[face, j]]] = True
-    return good, used
+    return good, used, lowest

@@ -57,6 +57,8 @@ def strip(
             session,
             view="compare",
             compared=(Method(REFERENCE), *row),
+            compared_by="model",
+            wipe=None,
             difference=True,
             range=(0.0, _END),
             size=(_PANEL * (len(row) + 1), 2 * _PANEL),

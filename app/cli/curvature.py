@@ -14,9 +14,11 @@ import numpy as np
 
 from app.cli import options
 from app.cli.console import note, table
+from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.findings import Findings, findings
 from app.quantities import QUANTITIES
+from app.session import Session
 from lutcore.diagnostics import vertex_scales
 from lutcore.errors import ParameterError
 from lutcore.statistics import PERCENTILES, Histogram
@@ -37,11 +39,12 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    options.add_mesh(parser)
+    output = options.add_mesh(parser)
     options.add_curvature(parser, words)
     options.add_peers(parser)
     options.add_colors(parser, several=True)
     options.add_picture(parser)
+    add_performing(parser, output, lights=False)
     parser.set_defaults(command=shlex.join(["curvelight", "curvature", *words]))
 
 
@@ -58,9 +61,17 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
+    return perform(arguments, _session, _measure)
+
+
+def _session(arguments: argparse.Namespace) -> Session:
+    return options.session_from(arguments, view="curvature", **_fixed(arguments))
+
+
+def _measure(work: Run) -> int:
     from app import export
 
-    work = Run(arguments, options.session_from(arguments, view="curvature", **_fixed(arguments)))
+    arguments = work.arguments
     work.require(".png", ".html", *export.DATA_SUFFIXES)
     warnings = work.warn()
     curvatures = work.pipeline.curvatures(work.session)
@@ -81,14 +92,13 @@ def run(arguments: argparse.Namespace) -> int:
             mesh = work.pipeline.subject(work.session).mesh
             export.save(work.output, mesh, export.curvature_arrays(curvatures, found.spread))
     result = work.summary(warnings) | found.as_json()
-    work.finish(result, _text(found, str(work.output)))
-    return 0
+    return work.finish(result, _text(found, str(work.output)))
 
 
 def _fixed(arguments: argparse.Namespace) -> dict[str, object]:
     """Return what follows from the output and the flags, where they do not say it."""
     fixed: dict[str, object] = {}
-    if arguments.output.suffix.lower() == ".html":
+    if arguments.output is not None and arguments.output.suffix.lower() == ".html":
         if arguments.quantity not in (None, "all"):
             raise ParameterError("a report shows all quantities; leave --quantity out")
         fixed["quantity"] = "all"

@@ -7,8 +7,10 @@ Without MESH, the scanned marble face. The right side shows sqrt((k1^2 + k2^2)/2
 import argparse
 
 from app.cli import options
+from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.quantities import QUANTITIES
+from app.session import Session
 
 _SIZE = (1700, 1000)
 
@@ -23,11 +25,12 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    options.add_mesh(parser, optional=True)
+    output = options.add_mesh(parser, optional=True)
     options.add_curvature(parser, words)
     options.add_shading(parser, words)
     options.add_colors(parser)
     options.add_picture(parser)
+    add_performing(parser, output)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -43,8 +46,15 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
+    return perform(arguments, _session, _draw)
+
+
+def _session(arguments: argparse.Namespace) -> Session:
     fixed = {} if arguments.size or arguments.session else {"size": _SIZE}
-    work = Run(arguments, options.session_from(arguments, view="figure", **fixed))
+    return options.session_from(arguments, view="figure", **fixed)
+
+
+def _draw(work: Run) -> int:
     work.require(".png")
     warnings = work.warn()
     made = work.draw()
@@ -54,5 +64,4 @@ def run(arguments: argparse.Namespace) -> int:
         "range": made.range,
         "range_unit": QUANTITIES[work.session.quantity].unit,
     }
-    work.finish(result, f"wrote {arguments.output}")
-    return 0
+    return work.finish(result, f"wrote {work.output}")

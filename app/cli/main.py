@@ -15,13 +15,16 @@ from lutcore.errors import CancelledError, CurvelightError, MeshError, Parameter
 _COMPILING = "compiling for this machine, once; that can take a minute"
 # Name: what it does. The command's module is imported only when it is used.
 COMMANDS = {
+    "view": "the window: inspect, shade and compare a mesh",
     "figure": "the paper's Figure 1: shading left, curvature right",
     "curvature": "measure curvature: a picture, or data",
     "shade": "shade as a translucent material: a picture, or data",
     "compare": "shading models side by side",
+    "verify": "redraw a picture from its own metadata, and compare",
     "choose": "which shading model is enough for a scene, and why",
     "stability": "where curvature estimators and shading models fail, and by how much",
     "chart": "speed against accuracy, and one recommendation",
+    "batch": "draw many meshes, each in a process of its own; take up what was interrupted",
     "lut": "a material's tables as npz, EXR or PNG",
     "models": "list shading models, diffusion profiles, curvature estimators and their parameters",
     "materials": "list materials",
@@ -43,7 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0 fine, 1 fault, 2 usage, 3 file cannot be read, 4 no usable surface in it.
+        Exit code: 0 fine, 1 fault, 2 usage, 3 file cannot be read, 4 no usable surface in it,
+        5 part of a batch failed, 6 a picture differs.
     """
     words = _joined(list(sys.argv[1:] if arguments is None else arguments))
     verbose = "--verbose" in words

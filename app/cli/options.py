@@ -7,13 +7,26 @@ from typing import Any, get_args
 from msgspec.structs import replace
 
 from app import session as state
-from app.session import Cone, Directional, Method, Point, Quantity, Session, Shadows, Vector
+from app.repairs import KINDS
+from app.session import (
+    Cone,
+    Directional,
+    Method,
+    Point,
+    Quantity,
+    Repair,
+    Session,
+    SessionError,
+    Shadows,
+    Vector,
+    Volume,
+)
 from lutcore.errors import ParameterError
 from lutcore.parameters import Choice, declared
 from lutcore.registry import Registry
 
 
-def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> None:
+def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> argparse.Action:
     """Add the MESH argument, the output and the session file.
 
     Parameters
@@ -22,18 +35,50 @@ def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> None:
         Of the command.
     optional : bool
         Whether the command has a mesh of its own.
+
+    Returns
+    -------
+    Action
+        The output's.
     """
     parser.add_argument(
         "mesh",
         nargs="?",
         metavar="MESH",
-        help="PLY, OBJ, STL, OFF, GLB or VTP file, or sample:NAME; may be left out with --session",
+        help="PLY, OBJ, STL, OFF, GLB, glTF, 3MF, VTP, VTU or VTK file, one that meshio or MeshLab "
+        "reads (.msh, .inp, .dae, .wrl ...), any of them with .gz; a volume: NIfTI, MetaImage, "
+        "VTI, TIFF or a folder of TIFF slices; or sample:NAME; may be left out with --session",
+    )
+    parser.add_argument(
+        "--level",
+        metavar="otsu|VALUE",
+        help="value of a volume's voxels that its surface lies at; else Otsu's threshold",
+    )
+    parser.add_argument(
+        "--smoothing", type=float, metavar="VOXELS", help="blur a volume before, sigma (0)"
+    )
+    parser.add_argument(
+        "--repair",
+        type=_repair,
+        action="append",
+        dest="repairs",
+        metavar="KIND[=VALUE]",
+        help="repair the mesh before anything else; may be repeated, done in order: "
+        f"{'; '.join(_repair_help(name) for name in KINDS)}".replace("%", "%%"),
     )
     parser.set_defaults(own_mesh=optional)
-    parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
-    parser.add_argument("--session", type=Path, metavar="FILE", help="start from a session file")
+    output = parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="OUT", help="result"
+    )
+    parser.add_argument(
+        "--session",
+        type=Path,
+        metavar="FILE",
+        help="start from a session file, or from a picture that Curvelight wrote",
+    )
     parser.add_argument("--save-session", type=Path, metavar="FILE", help="write the session too")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
+    return output
 
 
 def add_picture(parser: argparse.ArgumentParser) -> None:
@@ -81,13 +126,31 @@ def add_colors(parser: argparse.ArgumentParser, several: bool = False) -> None:
         "--range",
         type=_pair,
         metavar="LOW,HIGH",
-        help="ends of the colour bar; else 5th and 95th percentile of what the error bars trust",
+        help="ends of the colour bar; else percentiles of what the error bars trust",
     )
     group.add_argument(
         "--symmetric", action="store_const", const=True, help="range as wide below 0 as above"
     )
     group.add_argument("--flip", action="store_const", const=True, help="turn the map round")
+    group.add_argument(
+        "--percentiles",
+        type=_pair,
+        metavar="LOW,HIGH",
+        help="percentiles at the ends of a colour bar that has no --range (5,95)",
+    )
     group.add_argument("--flat", action="store_const", const=True, help="colours without light")
+    group.add_argument(
+        "--fade",
+        action="store_const",
+        const=True,
+        help="grey where the curvature is below its error",
+    )
+    group.add_argument(
+        "--strokes",
+        action="store_const",
+        const=True,
+        help="draw the principal directions: k1's in black, k2's in white",
+    )
 
 
 def add_curvature(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -238,7 +301,7 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
     given = vars(arguments)
     if not (given["mesh"] or given["session"] or given["own_mesh"]):
         raise ParameterError("say which mesh: a file, sample:NAME, or --session FILE")
-    start = state.read(given["session"]) if given.get("session") else Session()
+    start = _start(given.get("session"))
     changes = {name: given.get(name) for name in _PLAIN} | fixed
     if given.get("camera"):
         from app.camera import parse
@@ -246,10 +309,13 @@ def session_from(arguments: argparse.Namespace, **fixed: Any) -> Session:
         changes["camera"] = parse(given["camera"])
     if given.get("peers"):
         changes["peers"] = tuple(Method(name) for name in given["peers"])
+    if given.get("repairs"):
+        changes["repairs"] = tuple(given["repairs"])
     if given.get("lights"):
         changes["lights"] = tuple(given["lights"])
     if given.get("scale") is not None:
         start = _with_scale(start, given["scale"])
+    changes["volume"] = _volume(start.volume, given)
     changes["estimator"] = _method(start.estimator, given, "curvature estimator", "method")
     changes["profile"] = profile_from(arguments, start)
     changes["model"] = _method(start.model, given, "shading model", "model")
@@ -269,6 +335,9 @@ _PLAIN = (
     "range",
     "symmetric",
     "flip",
+    "percentiles",
+    "fade",
+    "strokes",
     "flat",
     "size",
     "background",
@@ -280,15 +349,32 @@ def _chosen(words: list[str], flag: str, field: str) -> str:
     scout = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     scout.add_argument(flag, dest="name")
     scout.add_argument("--session", type=Path)
+    scout.add_argument("--watch", action="store_true")
     try:
         known, _ = scout.parse_known_args(words)
     except argparse.ArgumentError:
         known = argparse.Namespace(name=None, session=None)  # the command's own parser will say
     if known.name:
         return str(known.name)
-    start = state.read(known.session) if known.session else Session()
+    try:
+        start = _start(known.session)
+    except SessionError:
+        if not known.watch:
+            raise
+        start = Session()  # it will be said again, and waited for
     method: Method = getattr(start, field)
     return method.name
+
+
+def _start(path: Path | None) -> Session:
+    """Return the session to start from: a file's, a picture's, or the default."""
+    if path is None:
+        return Session()
+    if path.suffix.lower() == ".png":
+        from app.provenance import read_record
+
+        return read_record(path).record.session
+    return state.read(path)
 
 
 def _add_parameters(parser: argparse.ArgumentParser, registry: Registry[Any], name: str) -> None:
@@ -388,11 +474,38 @@ def _names(text: str) -> list[str]:
     return names
 
 
+def _repair(text: str) -> Repair:
+    kind, equals, number = text.partition("=")
+    value = _floats(number, 1)[0] if equals else None
+    try:
+        return Repair(kind, value)  # type: ignore[arg-type]  # it checks the kind itself
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _repair_help(name: str) -> str:
+    kind = KINDS[name]
+    takes = f"=VALUE ({kind.default:g} {kind.value.unit})" if kind.value else ""
+    return f"{name}{takes} {kind.words.lower()}"
+
+
 def _pair(text: str) -> tuple[float, float]:
     low, high = _floats(text, 2)
     if not low < high:
         raise argparse.ArgumentTypeError(f"{text!r}: the first must be below the second")
     return low, high
+
+
+def _volume(start: Volume, given: dict[str, Any]) -> Volume:
+    level, smoothing = given.get("level"), given.get("smoothing")
+    try:
+        if level is not None:
+            start = replace(start, level=None if level == "otsu" else float(level))
+        return start if smoothing is None else replace(start, smoothing=smoothing)
+    except ValueError:
+        raise ParameterError(
+            f"level = {level}, smoothing = {smoothing}: expected otsu or a number, and a number"
+        ) from None
 
 
 def _with_scale(start: Session, text: str) -> Session:

@@ -8,7 +8,9 @@ vertex colours that a picture adds).
 import argparse
 
 from app.cli import options
+from app.cli.performing import add_performing, perform
 from app.cli.work import Run
+from app.session import Session
 
 
 def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -21,11 +23,12 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    options.add_mesh(parser)
+    output = options.add_mesh(parser)
     options.add_shading(parser, words)
     options.add_curvature(parser, words)
     options.add_colors(parser)
     options.add_picture(parser)
+    add_performing(parser, output)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,28 +44,38 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
+    return perform(arguments, _session, _shade)
+
+
+def _session(arguments: argparse.Namespace) -> Session:
+    return options.session_from(arguments, view="shade")
+
+
+def _shade(work: Run) -> int:
     from app import export
     from lutcore.color import auto_exposure
+    from lutcore.shading import AUTO
     from lutcore.statistics import percentiles
 
-    work = Run(arguments, options.session_from(arguments, view="shade"))
     work.require(".png", ".vtp", ".ply", ".npz")
     warnings = work.warn()
     exposure = work.session.exposure
+    camera = None
     if work.output.suffix.lower() == ".png":
         made = work.draw()
-        exposure = made.exposure
-        exitance = work.exitance(made.camera)
+        exposure, camera = made.exposure, made.camera
+        exitance = work.exitance(camera)
     else:
         exitance = work.exitance()
         exposure = exposure or auto_exposure(exitance)
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
-    seen = work.pipeline.detail(work.session)
+    seen, settled = work.pipeline.detail(work.session), work.settled(camera)
     result = work.summary(warnings) | {
         "material": work.pipeline.material(work.session).name,
         "profile": work.session.profile.name,
         "model": work.session.model.name,
+        "settled": settled.as_json(),
         "scale": work.pipeline.scale(work.session),
         "widths": None if seen is None else seen.widths.tolist(),
         "exposure": exposure,
@@ -71,5 +84,5 @@ def run(arguments: argparse.Namespace) -> int:
             for channel, name in enumerate(("red", "green", "blue"))
         },
     }
-    work.finish(result, f"wrote {arguments.output}")
-    return 0
+    chosen = f", shaded with {settled.label}" if work.session.model.name == AUTO else ""
+    return work.finish(result, f"wrote {work.output}{chosen}")

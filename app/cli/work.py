@@ -1,21 +1,25 @@
 """What the commands that work on a mesh have in common: run a session, write, report."""
 
 import argparse
+import dataclasses
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app import session as state
 from app.cli.console import answer, note, progress
+from app.contestants import alone
 from app.pipeline import Pipeline
 from app.session import Camera, Session
-from app.writing import check_writable, replacing
+from app.writing import check_writable
 from lutcore.arrays import FloatArray
 from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
+    from app.cli.referring import Reference
     from app.failing import Failing
     from app.picture import Picture
+    from app.settling import Settled
 
 
 class Run:
@@ -27,13 +31,19 @@ class Run:
         Of the command.
     session : Session
         What is asked for.
+    pipeline : Pipeline, optional
+        Where arrays come from, if some are there already.
     """
 
-    def __init__(self, arguments: argparse.Namespace, session: Session) -> None:
+    def __init__(
+        self, arguments: argparse.Namespace, session: Session, pipeline: Pipeline | None = None
+    ) -> None:
         self.arguments = arguments
         self.session = session
         self.output: Path = arguments.output
-        self.pipeline = Pipeline(progress(arguments))
+        self.pipeline = pipeline or Pipeline()
+        self.pipeline.progress = progress(arguments)
+        self.reference: Reference | None = None
         self._start = time.perf_counter()
 
     def require(self, *suffixes: str) -> None:
@@ -56,6 +66,10 @@ class Run:
             raise ParameterError.unknown("output format", name, suffixes)
         self._refuse_overwriting()
         check_writable(self.output)
+        if vars(self.arguments).get("reference"):
+            from app.cli.referring import Reference
+
+            self.reference = Reference(self.arguments, self.output)
 
     def _refuse_overwriting(self) -> None:
         """Keep a result from replacing its mesh, and the session from replacing the result."""
@@ -79,13 +93,15 @@ class Run:
             return []  # nobody would read them, and a million faces take most of a second
         size = self.pipeline.mm_per_unit(self.session)
         warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
-        if self.session.mm_per_unit is None and subject.sample is None:
+        if self.session.mm_per_unit is None and subject.mm_per_unit is None:
             warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
-        if self.session.view != "curvature" and self.pipeline.floored(self.session):
-            warnings.append(
-                f"{self.pipeline.material(self.session).name} absorbs so little that its glow has "
-                "no end; it is shaded with that of the least absorption that has one"
-            )
+        shaded = [one for one in alone(self.session) if one.view != "curvature"]
+        floored = [one for one in shaded if self.pipeline.floored(one)]
+        warnings += [
+            f"{name} absorbs so little that its glow has no end; it is shaded with that of the "
+            "least absorption that has one"
+            for name in dict.fromkeys(self.pipeline.material(one).name for one in floored)
+        ]
         for warning in warnings:
             note(self.arguments, f"{self.session.mesh}: {warning}")
         return warnings
@@ -96,9 +112,19 @@ class Run:
             return []
         from app.failing import failing
 
-        comparing = self.session.view == "compare"
-        models = self.session.compared if comparing else (self.session.model,)
-        return failing(self.session, self.pipeline, models)
+        singles = alone(self.session)
+        if self.session.view == "compare" and self.session.compared_by == "model":
+            return failing(self.session, self.pipeline, [one.model for one in singles])
+        found = []
+        for one in singles:
+            if one.view == "curvature":
+                continue
+            name = self.pipeline.material(one).name
+            several = len(singles) > 1
+            for model in failing(one, self.pipeline, (one.model,)):
+                label = f"{model.model} with {name}" if several else model.model
+                found.append(dataclasses.replace(model, model=label))
+        return found
 
     def exitance(self, camera: Camera | None = None) -> FloatArray:
         """Return the radiant exitance that the session's model gives.
@@ -113,29 +139,50 @@ class Run:
         ndarray, shape=(n, 3)
             Linear RGB.
         """
+        return self.pipeline.exitance(self.session, self.session.model, self._axes(camera))
+
+    def settled(self, camera: Camera | None = None) -> "Settled":
+        """Return which model that was, where `auto` leaves it open.
+
+        Parameters
+        ----------
+        camera : Camera, optional
+            As for `exitance`.
+
+        Returns
+        -------
+        Settled
+            Its name and parameters.
+        """
+        from app.settling import settled
+
+        model = self.session.model
+        return settled(self.pipeline.settled(self.session, model, self._axes(camera)))
+
+    def _axes(self, camera: Camera | None) -> FloatArray:
         from app.camera import axes, camera_of
 
         if camera is None:
             camera = camera_of(self.session.camera, self.pipeline.subject(self.session), 1.0)
-        return self.pipeline.exitance(self.session, self.session.model, axes(camera))
+        return axes(camera)
 
     def draw(self) -> "Picture":
-        """Make the session's picture and write it as PNG.
+        """Make the session's picture and write it as PNG that says how it was made.
 
         Returns
         -------
         Picture
             What was written.
         """
-        from PIL import Image
-
         from app.picture import render
+        from app.provenance import write_picture
+        from app.record import record_of
 
         made = render(self.session, self.pipeline)
-
-        with replacing(self.output) as beside:
-            # Level 1 writes five times faster than the default for a tenth more bytes.
-            Image.fromarray(made.image).save(beside, format="PNG", compress_level=1)
+        record = record_of(self.session, self.pipeline, made)
+        write_picture(self.output, made.image, record)
+        if self.reference is not None:
+            self.reference.compare(made.image, record)
         return made
 
     def summary(self, warnings: list[str]) -> dict[str, object]:
@@ -167,7 +214,7 @@ class Run:
             "seconds": round(time.perf_counter() - self._start, 3),
         }
 
-    def finish(self, result: dict[str, object], text: str) -> None:
+    def finish(self, result: dict[str, object], text: str) -> int:
         """Write the session, if asked to, and print the answer.
 
         Parameters
@@ -176,7 +223,17 @@ class Run:
             What a script reads.
         text : str
             What a person reads.
+
+        Returns
+        -------
+        int
+            Exit code: 6 if the picture differs from its reference.
         """
         if self.arguments.save_session:
             state.write(self.session, self.arguments.save_session)
-        answer(self.arguments, result, text)
+        if self.reference is None:
+            answer(self.arguments, result, text)
+            return 0
+        result |= {"reference": self.reference.as_json()}
+        answer(self.arguments, result, f"{text}\n{self.reference.sentence}")
+        return self.reference.exit_code

@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 import pyvista
 
+from app.pipeline import Pipeline
+from app.session import Directional, Method, Session
 from lutcore.errors import MeshError, ParameterError
 from lutcore.lights import DirectionalLight
 
@@ -41,7 +43,29 @@ def test_the_default_lights_are_figure_1s():
     )
 
 
+@pytest.mark.parametrize("model", ["lambert", "jensen2002"])
+def test_shadows_are_those_of_a_session(model):
+    lights = (Directional((0.3, 0.9, 0.2)), Directional((1.0, 0.0, 0.0)))
+    session = Session(mesh="sample:torus", lights=lights, shadows="on", model=Method(model))
+    pipeline = Pipeline()
+    mesh, size = pipeline.subject(session).mesh, pipeline.mm_per_unit(session)
+    surface = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
+    given = [DirectionalLight(light.direction) for light in lights]
+
+    def shaded(shadows):
+        return surface.curvelight.shade("skin1", given, model, size, shadows=shadows, exposure=1.0)[
+            "shading"
+        ]
+
+    truth = pipeline.exitance(session, session.model, np.eye(3)).astype(np.float32)
+    np.testing.assert_array_equal(shaded("on"), truth)
+    np.testing.assert_array_equal(shaded("auto"), truth)
+    assert shaded("off").mean() > 1.01 * truth.mean()
+
+
 def test_what_is_wrong_is_said():
+    with pytest.raises(ParameterError, match="shadows 'soft'"):
+        pyvista.Sphere().curvelight.shade(shadows="soft")
     with pytest.raises(MeshError, match="no faces"):
         pyvista.PolyData(np.zeros((3, 3))).curvelight.curvature()
     with pytest.raises(ParameterError, match="shading model"):

@@ -99,8 +99,18 @@ def test_noise(tmp_path, ending):
     unreadable(tmp_path, f"a.{ending}", np.random.default_rng(3).bytes(5000))
 
 
-def test_an_archive_is_named(tmp_path):
-    assert "gzip archive; unpack it first" in unreadable(tmp_path, "a.ply", b"\x1f\x8b\x08rest")
+@pytest.mark.parametrize(
+    ("magic", "name"), [(b"PK\3\4", "zip"), (b"BZh9", "bzip2"), (b"\xfd7zXZ\0", "xz")]
+)
+def test_an_archive_is_named(tmp_path, magic, name):
+    message = unreadable(tmp_path, "a.ply", magic + b"rest")
+    assert f"{name} archive; unpack it first" in message
+
+
+@pytest.mark.parametrize("name", ["text.ply", "plain.obj", "text.stl", "plain.off"])
+def test_text_in_utf_16_is_named(tmp_path, name):
+    content = FILES[name].decode().encode("utf-16")
+    assert "its text is UTF-16; save it as UTF-8" in unreadable(tmp_path, name, content)
 
 
 HUGE = 4_000_000_000

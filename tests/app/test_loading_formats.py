@@ -85,7 +85,7 @@ def test_a_wrong_ending_is_read_by_content_with_a_warning(tmp_path, name):
 
 
 def test_an_unknown_ending_is_read_by_content_with_a_warning(tmp_path):
-    loaded = load(tmp_path, "mesh.dat", FILES["little.ply"])
+    loaded = load(tmp_path, "mesh.bin", FILES["little.ply"])
     assert "unknown ending" in loaded.warnings[0]
 
 

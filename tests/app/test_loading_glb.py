@@ -197,7 +197,7 @@ def broken(change):
         (lambda d: d["accessors"][0].pop("bufferView"), "no data"),
         (lambda d: d["bufferViews"][0].update(byteOffset=10**9), "bytes of data"),
         (lambda d: d["bufferViews"][0].update(buffer=3), "number 3 of its 1 buffers"),
-        (lambda d: d["buffers"][0].update(uri="a.bin"), "in another file"),
+        (lambda d: d["buffers"][0].update(uri="a.bin"), ".a.bin., which is not there"),
         (lambda d: d["nodes"][0].update(mesh=9), "mesh 9, which does not exist"),
         (lambda d: d["nodes"][0].update(children=[0]), "do not form a tree"),
         (lambda d: d["nodes"][0].update(matrix=[1, 2]), "not valid glTF"),

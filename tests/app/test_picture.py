@@ -73,7 +73,7 @@ def test_a_stronger_light_needs_a_lower_exposure_and_gives_the_same_picture(pipe
 def test_a_comparison_has_one_exposure_and_states_the_difference(pipeline):
     pair = (Method("lambert"), Method("curvature-lut"))
     made = render(replace(TORUS, view="compare", compared=pair, difference=True), pipeline)
-    assert set(made.difference["curvature-lut"]) == {"mean", "p99", "max"}
+    assert set(made.difference["curvature-lut"]) == {"mean", "p99", "max", "vertex", "position"}
     same = render(replace(TORUS, view="compare", compared=(pair[0], pair[0])), pipeline)
     half = same.image.shape[1] // 2
     # One step in 255: the halves lie at different places, so interpolation rounds differently.

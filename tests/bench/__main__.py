@@ -19,6 +19,7 @@ SCRIPTS = (
     "bandwidth",
     "loading_speed",
     "pictures",
+    "batch",
 )
 
 

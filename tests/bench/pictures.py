@@ -1,7 +1,7 @@
-"""Mesh file to PNG: ours, with curvature and shading, beside PyVista showing it plain.
+"""Mesh file to PNG: ours, with curvature and shading, beside f3d and PyVista showing it plain.
 
 ``python -m tests.bench.pictures [--json]`` runs each in fresh processes in turn, so that all
-start-up counts: wall time and peak memory of the fastest of several runs, as ratios.
+start-up counts: the least wall time and peak memory of several runs, and ours as ratios to each.
 """
 
 import argparse
@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,14 @@ plotter = pyvista.Plotter(off_screen=True, window_size=(1000, 1000))
 plotter.add_mesh(mesh, smooth_shading=True)
 plotter.screenshot(sys.argv[2])
 """
+_F3D = """
+import sys, f3d
+engine = f3d.Engine.create_egl()
+engine.window.size = (1000, 1000)
+engine.scene.add(sys.argv[1])
+engine.window.render_to_image().save(sys.argv[2])
+"""
+_PEERS = {"f3d": _F3D, "PyVista": _PYVISTA}
 _OURS = "import sys; from app.cli.main import main; sys.exit(main(sys.argv[1:]))"
 
 
@@ -48,23 +57,46 @@ def without_camera(source: Path, path: Path) -> None:
     write_ply(path, mesh.vertices, mesh.faces)
 
 
-def measure(arguments: list[str]) -> tuple[float, float]:
-    """Return wall time in s and peak memory in MiB of a Python process, the best of some runs."""
-    times, peaks = [], []
+def run_once(arguments: list[str]) -> tuple[float, float]:
+    """Return wall time in s and peak memory in MiB of a fresh Python process."""
+    probe = (
+        "import resource, sys; code = sys.argv.pop(1)\n"
+        "try:\n    exec(code)\n"
+        "finally:\n"
+        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)"
+    )
+    start = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-c", probe, *arguments], capture_output=True, text=True, check=True
+    )
+    return time.perf_counter() - start, int(done.stderr.split()[-1]) / 1024.0
+
+
+def measure(ours: Path, theirs: Path, out: Path) -> dict[str, tuple[float, float]]:
+    """Return the least time and memory of ours and of each peer, their runs taking turns."""
+    commands = {"Curvelight": [_OURS, "shade", str(ours), "-o", str(out), "--quiet"]}
+    commands |= {name: [code, str(theirs), str(out)] for name, code in _PEERS.items()}
+    subprocess.run([sys.executable, "-c", *commands["Curvelight"]], check=True)  # compile once
+    runs: dict[str, list[tuple[float, float]]] = {name: [] for name in commands}
     for _ in range(_RUNS):
-        probe = (
-            "import resource, runpy, sys; code = sys.argv.pop(1)\n"
-            "try:\n    exec(code)\n"
-            "finally:\n"
-            "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)"
-        )
-        start = time.perf_counter()
-        done = subprocess.run(
-            [sys.executable, "-c", probe, *arguments], capture_output=True, text=True, check=True
-        )
-        times.append(time.perf_counter() - start)
-        peaks.append(int(done.stderr.split()[-1]) / 1024.0)
-    return min(times), min(peaks)
+        for name, command in commands.items():
+            out.unlink(missing_ok=True)
+            runs[name].append(run_once(command))
+            if not out.exists():
+                raise SystemExit(f"{name} wrote no picture of {theirs.name}")
+    return {name: (min(s for s, _ in one), min(m for _, m in one)) for name, one in runs.items()}
+
+
+def compared(label: str, found: dict[str, tuple[float, float]]) -> dict[str, object]:
+    """Return a row: the figures of each, and the ratios of ours to those of each peer."""
+    own = found["Curvelight"]
+    return {
+        "mesh": label,
+        "seconds": {name: time for name, (time, _) in found.items()},
+        "mib": {name: peak for name, (_, peak) in found.items()},
+        "time_ratio": {name: own[0] / found[name][0] for name in _PEERS},
+        "memory_ratio": {name: own[1] / found[name][1] for name in _PEERS},
+    }
 
 
 def main() -> None:
@@ -73,40 +105,37 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    rows = []
     with tempfile.TemporaryDirectory() as folder:
         scan, sheet, out = (Path(folder) / name for name in ("face.ply", "sheet.ply", "out.png"))
-        raw = sample("marble-face-raw").path
+        raw, bunny = sample("marble-face-raw").path, sample("bunny").path
         without_camera(raw, scan)
         million_triangles(sheet)
-        for label, ours, peer in (
-            ("face000.ply, 166 259 triangles", raw, scan),
-            ("sheet, 999 698 triangles", sheet, sheet),
-        ):
-            command = ["shade", str(ours), "-o", str(out), "--quiet"]
-            subprocess.run([sys.executable, "-c", _OURS, *command], check=True)  # compile once
-            our_time, our_peak = measure([_OURS, *command])
-            peer_time, peer_peak = measure([_PYVISTA, str(peer), str(out)])
-            rows.append(
-                {
-                    "mesh": label,
-                    "curvelight_s": our_time,
-                    "pyvista_s": peer_time,
-                    "time_ratio": our_time / peer_time,
-                    "curvelight_mib": our_peak,
-                    "pyvista_mib": peer_peak,
-                    "memory_ratio": our_peak / peer_peak,
-                }
+        rows = [
+            compared(label, measure(ours, theirs, out))
+            for label, ours, theirs in (
+                ("bunny.obj, 56 172 triangles", bunny, bunny),
+                ("face000.ply, 166 259 triangles", raw, scan),
+                ("sheet, 999 698 triangles", sheet, sheet),
             )
+        ]
     if arguments.json:
         print(json.dumps(rows, indent=2))
         return
+    print("| mesh | with curvature and shading | plain | time | memory |\n|-|-|-|-|-|")
     for row in rows:
-        print(
-            f"{row['mesh']}: Curvelight {row['curvelight_s']:.2f} s, {row['curvelight_mib']:.0f} "
-            f"MiB; PyVista plain {row['pyvista_s']:.2f} s, {row['pyvista_mib']:.0f} MiB; ratios "
-            f"{row['time_ratio']:.2f} and {row['memory_ratio']:.2f}"
-        )
+        for name in _PEERS:
+            print(line(row, name))
+
+
+def line(row: dict[str, Any], peer: str) -> str:
+    """Return the table's line for one mesh and one peer."""
+    own, other = (
+        f"{row['seconds'][name]:.2f} s, {row['mib'][name]:.0f} MiB" for name in ("Curvelight", peer)
+    )
+    return (
+        f"| {row['mesh']} | {own} | {peer} {other} | {row['time_ratio'][peer]:.2f} "
+        f"| {row['memory_ratio'][peer]:.2f} |"
+    )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lutcore.analytic import torus
+from lutcore.analytic import sphere, torus
+from lutcore.estimation import principal_curvatures
 from lutcore.mesh import TriangleMesh
 from lutcore.weld import weld
 
@@ -59,6 +61,42 @@ def test_a_mesh_of_flat_faces_only_has_nothing_left():
     welded = weld(TriangleMesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]]))
     assert welded.mesh is None
     assert np.array_equal(welded.index, [-1, -1, -1])
+
+
+def small_beside_large(times):
+    """Return a ball of radius 1 and one smaller by `times`, far from the middle of both."""
+    ball = sphere(300).mesh
+    points = np.concatenate([ball.vertices, ball.vertices / times + [0.5, 3.0, 0.3]])
+    return TriangleMesh(points, np.concatenate([ball.faces, ball.faces + len(ball.vertices)]))
+
+
+@pytest.mark.parametrize("times", [1e13, 1e14, 1e15, 3e15, 1e16, 1e17])
+def test_what_is_lost_in_rounding_beside_the_rest_is_dropped(times):
+    mesh = small_beside_large(times)
+    welded = weld(mesh)
+    count = len(mesh.vertices) // 2
+    assert np.all(welded.index[:count] >= 0)
+    ready = welded.mesh
+    assert len(ready.faces) >= len(mesh.faces) // 2
+    a, b, c = np.moveaxis(ready.vertices[ready.faces], 1, 0)
+    assert np.all(np.linalg.norm(np.cross(b - a, c - a), axis=1) > 0.0)
+    there = welded.index >= 0
+    shift = mesh.vertices[there] - ready.vertices[welded.index[there]]
+    assert np.ptp(shift, axis=0).max() < 1e-15
+    found = principal_curvatures(mesh, "rusinkiewicz2004")
+    assert np.all(np.isfinite(found.k1)) and np.all(np.isfinite(found.k2))
+    assert np.all(np.abs(found.k1[:count] - 1.0) < 0.1)
+
+
+@pytest.mark.parametrize("radius", [1e-150, 1e-200, 1e150])
+def test_a_unit_of_any_size_leaves_the_area(radius):
+    ball = sphere(300).mesh
+    mesh = TriangleMesh(radius * ball.vertices, ball.faces)
+    assert len(weld(mesh).mesh.faces) == len(ball.faces)
+    found = principal_curvatures(mesh, "rusinkiewicz2004")
+    truth = principal_curvatures(ball, "rusinkiewicz2004")
+    # On a sphere k1 - k2 is the root of a difference of rounded numbers.
+    assert np.allclose(found.k1 * radius, truth.k1, rtol=10.0 * np.sqrt(np.finfo(float).eps))
 
 
 @settings(deadline=None, max_examples=50)

@@ -1,0 +1,183 @@
+"""The window's cost: a frame beside a plain Gouraud one, and what a light that is dragged costs.
+
+``python -m tests.bench.window [--json]`` needs a screen (DISPLAY). Both draw the same mesh from
+the same camera into windows of the same size, without multisampling, taking turns; the least time
+of several frames counts. A light drag is what the window does while the mouse moves: colours
+computed anew from the session and sent to the renderer, beside the frame that follows. A swipe is
+a frame of two models on one surface after its divider was moved, beside a frame of one.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from msgspec.structs import replace
+
+from app.pipeline import Pipeline
+from app.session import Directional, Method, Session
+from tests.bench.pictures import million_triangles
+
+_SIZE = (1024, 768)
+_FRAMES = 9
+_LIMITS = {"frame": 1.0, "light drag": 0.15, "swipe": 1.4}
+
+
+class Ours:
+    """The view of a session, in a window on the screen."""
+
+    def __init__(self, session: Session, pipeline: Pipeline) -> None:
+        import vtkmodules.vtkRenderingFreeType
+        import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+        from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+        from app.picture import compose
+        from app.render import fill
+
+        self.pipeline, self.session = pipeline, session
+        self.made = compose(session, pipeline)
+        self.window = vtkRenderWindow()
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(*_SIZE)
+        self.drawn = fill(self.window, self.made.panels, _SIZE, session.background)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw a frame to its end."""
+        self.window.Render()
+        self.window.WaitForCompletion()
+
+    def turn_light(self, step: int) -> None:
+        """Compute and send the colours of another direction, as at one move of the mouse."""
+        from app.picture import compose
+        from app.scene import recolor
+
+        first, *others = self.session.lights
+        assert isinstance(first, Directional)
+        x, y, z = first.direction
+        moved = replace(first, direction=(x, y + 0.01 * step, z))
+        session = replace(self.session, lights=(moved, *others), camera=self.made.camera)
+        made = compose(session, self.pipeline, self.made.exposure)
+        recolor(self.drawn[0].actor, made.panels[0].content)
+
+
+class Plain:
+    """The same mesh in PyVista, smoothly shaded by a light of its own."""
+
+    def __init__(self, ours: Ours) -> None:
+        import numpy as np
+        import pyvista
+
+        mesh, camera = ours.made.panels[0].content.mesh, ours.made.camera
+        faces = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces])
+        self._plotter = pyvista.Plotter(window_size=_SIZE)
+        self._plotter.add_mesh(pyvista.PolyData(mesh.vertices, faces), smooth_shading=True)
+        view = self._plotter.camera
+        view.position, view.focal_point, view.up = camera.position, camera.target, camera.up
+        view.view_angle = camera.angle
+        self._plotter.show(auto_close=False, interactive=False)
+        self.window = self._plotter.render_window
+        self.window.SetMultiSamples(0)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw a frame to its end."""
+        self.window.Render()
+        self.window.WaitForCompletion()
+
+
+def least(*calls: Callable[[int], object]) -> list[float]:
+    """Return the least seconds of each call, the calls taking turns."""
+    found: list[list[float]] = [[] for _ in calls]
+    for frame in range(1, _FRAMES + 1):
+        for call, times in zip(calls, found, strict=True):
+            start = time.perf_counter()
+            call(frame)
+            times.append(time.perf_counter() - start)
+    return [min(times) for times in found]
+
+
+def frame(label: str, ours: Ours, plain: Plain) -> dict[str, Any]:
+    """Return the row of a frame: ours over a plain one."""
+    own, other = least(lambda _: ours.draw(), lambda _: plain.draw())
+    return {"what": "frame", "mesh": label, "ours": own, "beside": other, "ratio": own / other}
+
+
+def light_drag(label: str, ours: Ours) -> dict[str, Any]:
+    """Return the row of a light that is dragged: computing and sending over the frame.
+
+    What is sent goes to the graphics card with the frame that follows: what that one takes longer
+    than the same frame drawn again is counted too.
+    """
+    computed, first, drawn = least(ours.turn_light, *(2 * [lambda _: ours.draw()]))
+    sent = computed + max(first - drawn, 0.0)
+    return {
+        "what": "light drag",
+        "mesh": label,
+        "ours": sent,
+        "beside": drawn,
+        "ratio": sent / drawn,
+    }
+
+
+def swipe(label: str, ours: Ours) -> dict[str, Any]:
+    """Return the row of a divider that is dragged between two models: its frame over one of one."""
+    from app import wipe_shader
+
+    compared = (Method("curvature-lut"), Method("lambert"))
+    pair = replace(
+        ours.session, view="compare", compared=compared, wipe=0.5, camera=ours.made.camera
+    )
+    both = Ours(pair, ours.pipeline)
+
+    def drag(step: int) -> None:
+        wipe_shader.place(both.drawn[0].actor, step * _SIZE[0] / (_FRAMES + 1))
+        both.draw()
+
+    own, other = least(drag, lambda _: ours.draw())
+    return {"what": "swipe", "mesh": label, "ours": own, "beside": other, "ratio": own / other}
+
+
+def rows(folder: Path) -> list[dict[str, Any]]:
+    """Measure all meshes."""
+    sheet = folder / "sheet.ply"
+    million_triangles(sheet)
+    meshes = (
+        ("44k triangles", "sample:marble-face"),
+        ("166k triangles", "sample:marble-face-raw"),
+        ("1M triangles", str(sheet)),
+    )
+    found = []
+    for label, mesh in meshes:
+        ours = Ours(Session(mesh=mesh, size=_SIZE), Pipeline())
+        plain = Plain(ours)
+        found.append(frame(label, ours, plain))
+        if mesh == "sample:marble-face-raw":
+            found.append(light_drag(label, ours))
+            found.append(swipe(label, ours))
+    return found
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        found = rows(Path(folder))
+    if arguments.json:
+        print(json.dumps(found, indent=2))
+        return
+    print("| what | mesh | ours | beside | ratio | at most |\n|-|-|-|-|-|-|")
+    for row in found:
+        print(
+            f"| {row['what']} | {row['mesh']} | {1e3 * row['ours']:.1f} ms | "
+            f"{1e3 * row['beside']:.1f} ms | {row['ratio']:.2f} | {_LIMITS[row['what']]} |"
+        )
+
+
+if __name__ == "__main__":
+    main()
