@@ -1,0 +1,320 @@
+"""What the window does, without a window: one document, one worker, one picture. Knows no Qt."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from msgspec.structs import replace
+from psygnal import Signal
+
+from app import session as state
+from app.gui.document import Document
+from app.gui.worker import Post, Worker
+from app.pipeline import Pipeline, Subject
+from app.session import Camera, Session
+from lutcore.errors import CurvelightError
+from lutcore.progress import Progress
+
+if TYPE_CHECKING:
+    from app.picture import Composition
+    from lutcore.curvature import PrincipalCurvatures
+
+T = TypeVar("T")
+SESSION_SUFFIX = ".json"
+# A change of anything else leaves what is being computed of use: it is seen while dragging.
+_LIVE = {
+    "lights",
+    "exposure",
+    "camera",
+    "size",
+    "range",
+    "colormap",
+    "symmetric",
+    "flip",
+    "flat",
+    "albedo",
+    "wipe",
+    "background",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a session looks like, and what it was made of.
+
+    Parameters
+    ----------
+    session : Session
+        What was asked for, its size that of the view.
+    subject : Subject
+        The mesh.
+    composition : Composition
+        What the view shows.
+    curvatures : PrincipalCurvatures
+        What the picture used, 1/mesh unit.
+    mm_per_unit : float
+        Size of a mesh unit.
+    """
+
+    session: Session
+    subject: Subject
+    composition: "Composition"
+    curvatures: "PrincipalCurvatures"
+    mm_per_unit: float
+
+
+class Controller:
+    """Turns what a person does into sessions, and sessions into what is shown.
+
+    Parameters
+    ----------
+    post : callable
+        Runs a function on the window's thread; see `app.gui.worker`.
+    session : Session, optional
+        What to begin with; the scanned marble face if left out.
+    """
+
+    loaded = Signal(object)
+    """Emitted with the `Subject` as soon as another mesh is there, before its first picture."""
+    previewed = Signal(object)
+    """Emitted with a grey Composition where there is no picture yet that could stay."""
+    shown = Signal(object)
+    """Emitted with the `Outcome` when a picture is ready."""
+    failed = Signal(str)
+    """Emitted with a message when something a person asked for could not be done."""
+    noted = Signal(str)
+    """Emitted with a remark for the log."""
+    standing = Signal(object)
+    """Emitted with the `Standing` of long work, None when there is none."""
+
+    def __init__(self, post: Post, session: Session | None = None) -> None:
+        self.document = Document(session or Session())
+        self.pipeline = Pipeline()
+        """Used in the worker's thread only: see `run`."""
+        self.worker = Worker(post, self.standing.emit)
+        self.aside = Worker(post, self.standing.emit)
+        """For what needs no pipeline and takes long: pictures go on meanwhile."""
+        self.outcome: Outcome | None = None
+        self.range_locked = False
+        """Whether another mesh is shown in the range of this one, to compare them."""
+        self._size = (800, 600)
+        self._held: float | None = None
+        self._subject: Subject | None = None
+        self.document.changed.connect(self._on_change)
+
+    @property
+    def session(self) -> Session:
+        """The document's session."""
+        return self.document.session
+
+    def open(self, path: str | Path) -> None:
+        """Open a mesh, or a session file, in place of what is there.
+
+        The old picture stays until the new one is ready; if the file is broken, for good.
+
+        Parameters
+        ----------
+        path : str or Path
+            A mesh file, ``sample:NAME`` or a session file.
+        """
+        file = Path(path) if str(path).lower().endswith(SESSION_SUFFIX) else None
+        try:
+            session = self._of_mesh(str(path)) if file is None else state.read(file)
+        except CurvelightError as error:
+            self.failed.emit(str(error))
+            return
+
+        def opened(_: Subject) -> None:
+            if file is None:
+                self.document.put("open mesh", session)
+            else:
+                self.document.open(session, file)
+
+        # Loaded before the document changes, so that a broken file leaves everything as it was.
+        self.run("open", lambda _: self.pipeline.subject(session), opened, supersede=True)
+
+    def _of_mesh(self, mesh: str) -> Session:
+        """Keep how things are shown, and drop what belonged to the old mesh."""
+        return replace(
+            self.session,
+            mesh=mesh,
+            repairs=(),
+            mm_per_unit=None,
+            scale=None,
+            range=self.session.range if self.range_locked else None,
+            camera="auto",
+        )
+
+    def change(self, label: str, **fields: Any) -> bool:
+        """Change fields of the session, undoable.
+
+        Parameters
+        ----------
+        label : str
+            What is done, as a person calls it.
+        **fields : object
+            New values.
+
+        Returns
+        -------
+        bool
+            False if a value cannot be; the message was emitted then.
+        """
+        try:
+            self.document.change(label, **fields)
+        except CurvelightError as error:
+            self.failed.emit(str(error))
+            return False
+        return True
+
+    def look(self, camera: str | Camera) -> None:
+        """Move the camera.
+
+        Parameters
+        ----------
+        camera : str or Camera
+            See `Session.camera`.
+        """
+        self.document.look(camera)
+
+    def resize(self, width: int, height: int) -> None:
+        """Tell the size of the view.
+
+        Parameters
+        ----------
+        width, height : int
+            Pixels.
+        """
+        size = max(width, 64), max(height, 64)
+        if size != self._size:
+            self._size = size
+            self.refresh()
+
+    def refresh(self, supersede: bool = False) -> None:
+        """Ask for the picture of the session as it is now.
+
+        Parameters
+        ----------
+        supersede : bool
+            Whether what is being computed is of no use any more.
+        """
+        session, held = replace(self.session, size=self._size), self._held
+        self.run(
+            "picture", lambda _: self._compose(session, held), self._on_shown, supersede=supersede
+        )
+
+    def begin_drag(self) -> None:
+        """Make what follows one step of the history, under the exposure of the picture shown.
+
+        An exposure that followed a light while it is dragged would flicker. `end_drag` has it
+        found anew, so that the still picture is that of the command line.
+        """
+        self.document.begin_drag()
+        self._held = self.outcome.composition.exposure if self.outcome else None
+
+    def end_drag(self) -> None:
+        """End what `begin_drag` began."""
+        self.document.end_drag()
+        held, self._held = self._held, None
+        if held is not None and self.session.exposure is None:
+            self.refresh()
+
+    def run(
+        self,
+        key: str,
+        job: Callable[[Progress], T],
+        done: Callable[[T], None],
+        supersede: bool = False,
+        failed: Callable[[Exception], None] | None = None,
+    ) -> None:
+        """Do something with the pipeline in the worker's thread.
+
+        Parameters
+        ----------
+        key : str
+            Its kind: of each only the newest counts.
+        job : callable
+            Gets a function to report to.
+        done : callable
+            Gets the result on the window's thread.
+        supersede : bool
+            Whether one of the same kind that runs is of no use any more.
+        failed : callable, optional
+            Gets what was raised; by default a message is emitted.
+        """
+
+        def with_progress(progress: Progress) -> T:
+            self.pipeline.progress = progress
+            return job(progress)
+
+        self.worker.submit(key, with_progress, done, failed or self.on_failed, supersede)
+
+    def close(self) -> None:
+        """End the workers."""
+        self.worker.close()
+        self.aside.close()
+
+    def _compose(self, session: Session, held: float | None) -> Outcome:
+        subject = self.pipeline.subject(session)
+        if subject is not self._subject:
+            if self._subject is None:
+                from app.gui.preview import preview
+
+                grey = preview(session, subject)
+                self.worker.post(lambda: self.previewed.emit(grey))
+            self._subject = subject
+            self.worker.post(lambda: self.loaded.emit(subject))
+        from app.picture import compose
+
+        made = compose(session, self.pipeline, held)
+        return Outcome(
+            session,
+            subject,
+            made,
+            self.pipeline.curvatures(session),
+            self.pipeline.mm_per_unit(session),
+        )
+
+    def _on_change(self, session: Session, before: Session) -> None:
+        changed = {name for name in Session.__struct_fields__ if _differ(session, before, name)}
+        if changed:
+            self.refresh(supersede=not changed <= _LIVE)
+
+    def _on_shown(self, outcome: Outcome) -> None:
+        self.outcome = outcome
+        self.shown.emit(outcome)
+
+    def on_failed(self, error: Exception) -> None:
+        """Tell a person what went wrong.
+
+        Parameters
+        ----------
+        error : Exception
+            What was raised.
+        """
+        self.failed.emit(message_of(error))
+
+
+def message_of(error: Exception) -> str:
+    """Return what to tell a person of an error.
+
+    Parameters
+    ----------
+    error : Exception
+        What was raised.
+
+    Returns
+    -------
+    str
+        Its message; that of a fault in the program says so.
+    """
+    if isinstance(error, CurvelightError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory; decimate the mesh or close programs"
+    return f"fault in the program: {type(error).__name__}: {error}"
+
+
+def _differ(one: Session, other: Session, name: str) -> bool:
+    return bool(getattr(one, name) != getattr(other, name))

@@ -1,0 +1,95 @@
+"""The docks: each module of this package is one.
+
+A module has `TITLE`, `AREA` (left, right or bottom), `ORDER` in its area, `SHOWN` at first, and
+``build(window) -> QWidget``, called when the dock is first seen.
+"""
+
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QDockWidget, QScrollArea, QTabWidget, QWidget
+
+if TYPE_CHECKING:
+    from app.gui.window import Window
+
+_AREAS = {
+    "left": Qt.DockWidgetArea.LeftDockWidgetArea,
+    "right": Qt.DockWidgetArea.RightDockWidgetArea,
+    "bottom": Qt.DockWidgetArea.BottomDockWidgetArea,
+}
+
+
+class Dock(QDockWidget):
+    """A dock whose content is made when it is first seen.
+
+    Parameters
+    ----------
+    window : Window
+        Its window.
+    name : str
+        The module's name in this package.
+    """
+
+    def __init__(self, window: "Window", name: str) -> None:
+        self._module = import_module(f"app.gui.docks.{name}")
+        super().__init__(self._module.TITLE, window)
+        self.setObjectName(f"dock.{name}")
+        self.setAccessibleName(self._module.TITLE)
+        self.name = name
+        self.area: str = self._module.AREA
+        self.order: int = self._module.ORDER
+        self.shown: bool = self._module.SHOWN
+        self._window = window
+        self.content: QWidget | None = None
+        self.visibilityChanged.connect(self._on_visibility)
+
+    def fill(self) -> QWidget:
+        """Make the content, if it is not there yet.
+
+        Returns
+        -------
+        QWidget
+            The content.
+        """
+        if self.content is None:
+            self.content = self._module.build(self._window)
+            scroll = QScrollArea(self)
+            scroll.setWidgetResizable(True)
+            scroll.setFrameShape(QScrollArea.Shape.NoFrame)
+            scroll.setWidget(self.content)
+            self.setWidget(scroll)
+        return self.content
+
+    def _on_visibility(self, visible: bool) -> None:
+        if visible:
+            self.fill()
+
+
+def add_all(window: "Window") -> dict[str, Dock]:
+    """Put the docks around a window's view.
+
+    Parameters
+    ----------
+    window : Window
+        Has its controller and its canvas.
+
+    Returns
+    -------
+    dict of str to Dock
+        By name.
+    """
+    window.setTabPosition(Qt.DockWidgetArea.AllDockWidgetAreas, QTabWidget.TabPosition.North)
+    first: dict[str, Dock] = {}
+    found = [Dock(window, one.name) for one in iter_modules(__path__)]
+    made = {dock.name: dock for dock in sorted(found, key=lambda dock: (dock.area, dock.order))}
+    for dock in made.values():
+        window.addDockWidget(_AREAS[dock.area], dock)
+        if dock.area in first:
+            window.tabifyDockWidget(first[dock.area], dock)
+        first.setdefault(dock.area, dock)
+        dock.setVisible(dock.shown)
+    for dock in first.values():
+        dock.raise_()
+    return made

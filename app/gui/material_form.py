@@ -1,0 +1,195 @@
+"""The material: one that was measured, or its coefficients on sliders."""
+
+from collections.abc import Callable
+
+from qtpy.QtWidgets import QComboBox, QFormLayout, QGridLayout, QLabel, QWidget
+
+from app.gui.slider import Slider
+from app.session import Substance
+from lutcore.errors import ParameterError
+from lutcore.materials import Material, material, materials
+
+CHANGED = ", changed"
+_CHANNELS = ("red", "green", "blue")
+_PER_MM = " /mm"
+
+
+class MaterialForm(QWidget):
+    """Presets, and sliders for the coefficients of each channel.
+
+    Parameters
+    ----------
+    changed : callable
+        Gets a material's name, or a `Substance`, when a person changes something.
+    begin, end : callable
+        Called when a slider's drag begins and ends.
+    """
+
+    def __init__(
+        self,
+        changed: Callable[[str | Substance], object],
+        begin: Callable[[], None],
+        end: Callable[[], None],
+    ) -> None:
+        super().__init__()
+        self._changed = changed
+        self._shown: Material | None = None
+        self.preset = QComboBox(self)
+        self.preset.setAccessibleName("Material")
+        self.preset.setToolTip("Materials that were measured by Jensen et al. 2001")
+        self.preset.addItems(materials())
+        self.preset.activated.connect(self._on_preset)
+        self.scattering = [
+            Slider(
+                f"Scattering, {channel}",
+                f"Reduced scattering coefficient sigma_s' of {channel} light, 1/mm",
+                0.001,
+                100.0,
+                suffix=_PER_MM,
+                logarithmic=True,
+            )
+            for channel in _CHANNELS
+        ]
+        self.absorption = [
+            Slider(
+                f"Absorption, {channel}",
+                f"Absorption coefficient sigma_a of {channel} light, 1/mm; 0 at the left end",
+                0.0001,
+                10.0,
+                suffix=_PER_MM,
+                logarithmic=True,
+                zero=True,
+            )
+            for channel in _CHANNELS
+        ]
+        self.eta = Slider(
+            "Refractive index", "Refractive index eta against the air outside, 1 to 3", 1.0, 3.0
+        )
+        rows = QFormLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
+        rows.addRow("Material", self.preset)
+        for symbol, sliders in (("\u03c3s\u2032", self.scattering), ("\u03c3a", self.absorption)):
+            for channel, slider in zip(_CHANNELS, sliders, strict=True):
+                rows.addRow(f"{symbol} {channel}", slider)
+        rows.addRow("\u03b7", self.eta)
+        self.facts = _Facts()
+        rows.addRow(self.facts)
+        for slider in (*self.scattering, *self.absorption, self.eta):
+            slider.changed.connect(lambda _: self._on_slider())
+            slider.pressed.connect(begin)
+            slider.released.connect(end)
+
+    def follow(self, chosen: str | Substance) -> None:
+        """Show a material, without telling anybody.
+
+        Parameters
+        ----------
+        chosen : str or Substance
+            `Session.material`.
+        """
+        try:
+            found = material_of(chosen)
+        except ParameterError:
+            return  # what draws the picture says so
+        self._shown = found
+        while self.preset.count() > len(materials()):
+            self.preset.removeItem(self.preset.count() - 1)
+        if self.preset.findText(found.name) < 0 or isinstance(chosen, Substance):
+            self.preset.addItem(found.name)
+            self.preset.setCurrentIndex(self.preset.count() - 1)
+        else:
+            self.preset.setCurrentText(found.name)
+        for sliders, values in (
+            (self.scattering, found.scattering),
+            (self.absorption, found.absorption),
+        ):
+            for slider, value in zip(sliders, values, strict=True):
+                slider.follow(value)
+        self.eta.follow(found.eta)
+
+    def _on_preset(self, index: int) -> None:
+        if index < len(materials()):
+            self._changed(self.preset.itemText(index))
+
+    def _on_slider(self) -> None:
+        name = self._shown.name if self._shown else ""
+        base = name.removesuffix(CHANGED)
+        s_red, s_green, s_blue = (slider.value for slider in self.scattering)
+        a_red, a_green, a_blue = (slider.value for slider in self.absorption)
+        made = Substance(
+            base + CHANGED, (s_red, s_green, s_blue), (a_red, a_green, a_blue), self.eta.value
+        )
+        self._changed(base if _same(base, made) else made)
+
+
+class _Facts(QWidget):
+    """What follows from the coefficients, by channel."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        self.cells: dict[tuple[str, int], QLabel] = {}
+        for row, (key, title, doc) in enumerate(
+            (
+                ("length", "l_d, mm", "Diffuse mean free path: how far light spreads"),
+                ("total", "R_d", "Diffuse reflectance of a flat surface"),
+            )
+        ):
+            label = QLabel(title, self)
+            label.setToolTip(doc)
+            grid.addWidget(label, row, 0)
+            for channel, name in enumerate(_CHANNELS):
+                cell = QLabel("", self)
+                cell.setToolTip(f"{doc}, {name}")
+                cell.setAccessibleName(f"{title}, {name}")
+                grid.addWidget(cell, row, channel + 1)
+                self.cells[key, channel] = cell
+
+    def tell(self, lengths: list[float], totals: list[float]) -> None:
+        """Show the figures.
+
+        Parameters
+        ----------
+        lengths, totals : list of float
+            l_d in mm, infinite without absorption, and R_d.
+        """
+        for channel, (length, total) in enumerate(zip(lengths, totals, strict=True)):
+            self.cells["length", channel].setText(f"{length:.3g}".replace("inf", "\u221e"))
+            self.cells["total", channel].setText(f"{total:.3f}")
+
+
+def material_of(chosen: str | Substance) -> Material:
+    """Return the material that a session names or spells out.
+
+    Parameters
+    ----------
+    chosen : str or Substance
+        `Session.material`.
+
+    Returns
+    -------
+    Material
+        The same.
+
+    Raises
+    ------
+    ParameterError
+        If there is none of that name.
+    """
+    if isinstance(chosen, str):
+        return material(chosen)
+    return Material(chosen.name, chosen.scattering, chosen.absorption, chosen.eta)
+
+
+def _same(name: str, made: Substance) -> bool:
+    """Tell whether sliders are back at the values of the named material."""
+    if name not in materials():
+        return False
+    known = material(name)
+    return (known.scattering, known.absorption, known.eta) == (
+        made.scattering,
+        made.absorption,
+        made.eta,
+    )

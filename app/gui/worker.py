@@ -1,0 +1,179 @@
+"""Long work off the window's thread: the newest request counts. Knows no Qt."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from lutcore.errors import CancelledError
+from lutcore.progress import Progress
+
+T = TypeVar("T")
+Post = Callable[[Callable[[], None]], None]
+"""Runs a function on the window's thread, soon, in order."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where the work stands.
+
+    Parameters
+    ----------
+    share : float
+        Done, 0 to 1.
+    step : str
+        What is being done.
+    seconds : float
+        Since it began.
+    """
+
+    share: float
+    step: str
+    seconds: float
+
+
+@dataclass(eq=False)
+class _Task(Generic[T]):
+    key: str
+    job: Callable[[Progress], T]
+    done: Callable[[T], None]
+    failed: Callable[[Exception], None]
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
+class Worker:
+    """One thread that does jobs one after another; of each kind only the newest.
+
+    Parameters
+    ----------
+    post : callable
+        Runs a function on the thread that results belong to.
+    standing : callable
+        Told there, a few times a second, where the work stands; None when nothing is left to do.
+    """
+
+    _TELL = 0.1
+
+    def __init__(self, post: Post, standing: Callable[[Standing | None], None]) -> None:
+        self.post, self._standing = post, standing
+        self._waiting: dict[str, _Task[object]] = {}
+        self._running: _Task[object] | None = None
+        self._ended = False
+        self._wake = threading.Condition()
+        self._thread = threading.Thread(target=self._work, name="curvelight-worker", daemon=True)
+        self._thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being done or waits."""
+        with self._wake:
+            return bool(self._waiting) or self._running is not None
+
+    def submit(
+        self,
+        key: str,
+        job: Callable[[Progress], T],
+        done: Callable[[T], None],
+        failed: Callable[[Exception], None],
+        supersede: bool = False,
+    ) -> None:
+        """Ask for a job; one of the same kind that has not begun is dropped.
+
+        Parameters
+        ----------
+        key : str
+            Its kind.
+        job : callable
+            Runs in the worker's thread with a function to report to; see `lutcore.progress`.
+        done : callable
+            Gets the result, on the other thread.
+        failed : callable
+            Gets what the job raised, `CancelledError` apart, on the other thread.
+        supersede : bool
+            Whether one of the same kind that is running is cancelled too, as its result would be
+            of no use; otherwise it ends, so that a stream of requests still shows results.
+        """
+        task = _Task(key, job, done, failed)
+        with self._wake:
+            self._waiting.pop(key, None)
+            self._waiting[key] = task  # type: ignore[assignment]
+            if supersede and self._running is not None and self._running.key == key:
+                self._running.stop.set()
+            self._wake.notify()
+
+    def cancel(self) -> None:
+        """Drop what waits, and stop what runs as soon as it looks."""
+        with self._wake:
+            self._waiting.clear()
+            if self._running is not None:
+                self._running.stop.set()
+
+    def close(self, patience: float = 2.0) -> None:
+        """End the thread.
+
+        Parameters
+        ----------
+        patience : float
+            Seconds to wait for a job that does not look whether it shall stop.
+        """
+        self.cancel()
+        with self._wake:
+            self._ended = True
+            self._wake.notify()
+        self._thread.join(patience)
+
+    def _work(self) -> None:
+        while True:
+            with self._wake:
+                while not self._waiting and not self._ended:
+                    self._wake.wait()
+                if self._ended:
+                    return
+                task = self._running = self._waiting.pop(next(iter(self._waiting)))
+            self._do(task)
+            with self._wake:
+                self._running = None
+                idle = not self._waiting
+            if idle:
+                self._say(None)
+
+    def _do(self, task: _Task[object]) -> None:
+        try:
+            result = task.job(self._reporter(task))
+        except CancelledError:
+            return
+        except Exception as problem:
+            error = problem  # the name of an except clause ends with it
+            self._deliver(task, lambda: task.failed(error))
+        else:
+            self._deliver(task, lambda: task.done(result))
+
+    def _deliver(self, task: _Task[object], call: Callable[[], None]) -> None:
+        def unless_stopped() -> None:
+            if not task.stop.is_set():
+                call()
+
+        self._hand_over(unless_stopped)
+
+    def _reporter(self, task: _Task[object]) -> Progress:
+        start = told = time.monotonic()
+
+        def report(share: float, step: str) -> bool:
+            nonlocal told
+            now = time.monotonic()
+            if now - told >= self._TELL:
+                told = now
+                self._say(Standing(share, step, now - start))
+            return not task.stop.is_set()
+
+        return report
+
+    def _say(self, standing: Standing | None) -> None:
+        self._hand_over(lambda: self._standing(standing))
+
+    def _hand_over(self, call: Callable[[], None]) -> None:
+        with self._wake:
+            ended = self._ended
+        if not ended:
+            self.post(call)

@@ -1,0 +1,99 @@
+"""The chart of this mesh, the recommendation, the map, and the table of psi."""
+
+import numpy as np
+import pytest
+from qtpy.QtCore import QPoint, Qt
+
+from lutcore.costs import PREDICTION, Cost, candidates
+from tests.app.gui.conftest import pixels, settled
+
+
+@pytest.fixture
+def choose(window, qtbot, monkeypatch):
+    """The dock, with costs as if this machine had been measured."""
+    costs = {one.label: Cost(10.0 + n, one.model.growth) for n, one in enumerate(candidates())}
+    costs[PREDICTION] = Cost(5.0, "n")
+    monkeypatch.setattr("app.costs.known", lambda: True)
+    monkeypatch.setattr("app.choosing.measured", lambda progress, again: costs)
+    window.act(window.actions_["window.choose"])
+    panel = window.docks["choose"].fill()
+    qtbot.waitUntil(lambda: panel.choosing.needs is not None, timeout=300_000)
+    settled(qtbot, window)
+    return panel
+
+
+def test_the_recommendation_is_said_and_a_click_uses_it(window, qtbot, choose) -> None:
+    choice = choose.choosing.needs.choice
+    assert choice.sentence[1:] in choose.sentence.text()
+    assert len(choose.chart.dots) == len(choice.rungs)
+    qtbot.mouseClick(choose.use, Qt.MouseButton.LeftButton)
+    settled(qtbot, window)
+    assert window.controller.session.model.name == choice.chosen.candidate.name
+    assert any(dot.current and dot.chosen for dot in choose.chart.dots)
+
+
+def test_a_click_on_a_point_uses_that_model(window, qtbot, choose) -> None:
+    index = next(i for i, dot in enumerate(choose.chart.dots) if dot.label == "wrap")
+    qtbot.mouseClick(
+        choose.chart, Qt.MouseButton.LeftButton, pos=choose.chart.place(index).toPoint()
+    )
+    settled(qtbot, window)
+    assert (
+        window.controller.session.model.name
+        == choose.choosing.needs.choice.rungs[index].candidate.name
+    )
+    qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert window.controller.session.model.name == "curvature-lut"
+
+
+def test_the_tolerance_moves_the_choice(window, qtbot, choose) -> None:
+    first = choose.choosing.needs
+    choose.slider.setFocus()
+    qtbot.keyClick(choose.slider, Qt.Key.Key_End)
+    qtbot.waitUntil(lambda: choose.choosing.needs is not first, timeout=240_000)
+    loose = choose.choosing.needs.choice
+    assert loose.tolerance.value == pytest.approx(0.3)
+    adequate = [rung.adequate for rung in loose.rungs]
+    assert sum(adequate) > sum(rung.adequate for rung in first.choice.rungs)
+
+
+def test_the_map_colors_the_mesh_and_goes_away(window, qtbot, choose) -> None:
+    before = pixels(window)
+    choose.map.click()
+    qtbot.waitUntil(lambda: choose.choosing.map is not None, timeout=240_000)
+    settled(qtbot, window)
+    assert choose.legend.count() == len(choose.choosing.map.labels) + 1
+    assert (pixels(window) != before).any(axis=2).mean() > 0.1
+    choose.map.click()
+    settled(qtbot, window)
+    np.testing.assert_array_equal(pixels(window), before)
+
+
+def test_the_table_is_brushed_in_both_directions(window, qtbot) -> None:
+    window.act(window.actions_["window.table"])
+    panel = window.docks["table"].fill()
+    settled(qtbot, window)
+    qtbot.waitUntil(lambda: panel._arguments is not None, timeout=240_000)
+    before = pixels(window)
+    plot, middle = panel.plot, panel.plot.height() // 2
+    left = round(plot.across(0.0))
+    qtbot.mousePress(plot, Qt.MouseButton.LeftButton, pos=QPoint(left, middle))
+    qtbot.mouseMove(plot, QPoint(left + 40, middle))
+    qtbot.mouseRelease(plot, Qt.MouseButton.LeftButton, pos=QPoint(left + 40, middle))
+    settled(qtbot, window)
+    low, high = plot.brush
+    share = np.mean((panel._arguments[0] >= low) & (panel._arguments[0] <= high))
+    assert panel.said.text() == f"{100.0 * share:.1f} % of the vertices"
+    shown = pixels(window).astype(int)
+    yellow = (shown[..., 0] > shown[..., 2] + 80) & (shown[..., 1] > shown[..., 2] + 80)
+    assert yellow.any()
+    # From the mesh to the table.
+    centre = QPoint(window.canvas.width() // 2, window.canvas.height() // 2)
+    qtbot.mouseMove(window.canvas, centre + QPoint(3, 3))
+    qtbot.mouseMove(window.canvas, centre)
+    qtbot.waitUntil(lambda: len(plot.marks) == 3, timeout=240_000)
+    assert plot.marks[0] < plot.marks[2]  # red light goes farther
+    qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=QPoint(left + 80, middle))
+    settled(qtbot, window)
+    assert plot.brush is None
+    np.testing.assert_array_equal(pixels(window), before)

@@ -1,0 +1,77 @@
+"""Point at the mesh, pin, copy, save."""
+
+import csv
+
+import numpy as np
+import pytest
+from qtpy.QtCore import QPoint, Qt
+from qtpy.QtGui import QGuiApplication
+
+from tests.app.gui.conftest import pixels, settled
+
+
+@pytest.fixture
+def panel(window, qtbot):
+    dock = window.docks["probe"]
+    window.act(window.actions_["window.probe"])
+    panel = dock.fill()
+    qtbot.waitUntil(panel.isVisible)
+    settled(qtbot, window)
+    return panel
+
+
+def _middle(window) -> QPoint:
+    return QPoint(window.canvas.width() // 2, round(window.canvas.height() * 0.48))
+
+
+def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) -> None:
+    qtbot.mouseMove(window.canvas, _middle(window) + QPoint(9, 9))
+    qtbot.mouseMove(window.canvas, _middle(window))
+    qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
+    found = panel.probing.current
+    # The sphere has radius 10 mm, and its middle is seen from the front.
+    assert found.values["k1"] == pytest.approx(0.1, rel=0.05)
+    assert found.position[2] == pytest.approx(10.0, abs=0.2)
+    shown = {
+        panel.values.topLevelItem(row).text(0): panel.values.topLevelItem(row).text(1)
+        for row in range(panel.values.topLevelItemCount())
+    }
+    assert "\N{PLUS-MINUS SIGN}" in shown["curvature k1"]
+    # What the model of the view gives is what the view shows there.
+    color = pixels(window)[_middle(window).y(), _middle(window).x()].astype(int)
+    assert np.abs(color - found.readings[0].color).max() <= 6 or (color > 240).all()
+
+
+def test_a_click_pins_and_the_table_can_be_copied_and_saved(window, qtbot, panel, tmp_path) -> None:
+    canvas = window.canvas
+    for shift in (0, 40):
+        qtbot.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=_middle(window) + QPoint(shift, 0))
+        qtbot.waitUntil(lambda n=shift // 40 + 1: len(panel.probing.pins) == n, timeout=240_000)
+    assert window.controller.document.undo_label is None
+    assert panel.table.rowCount() == 2
+    # A mark of the pins' colour is on the mesh.
+    yellow = np.array([255, 217, 26])
+    assert (np.abs(pixels(window).astype(int) - yellow).max(axis=2) < 8).sum() > 20
+    qtbot.mouseClick(panel.buttons["Copy"], Qt.MouseButton.LeftButton)
+    copied = QGuiApplication.clipboard().text()
+    panel.save(tmp_path / "pins.csv")
+    assert (tmp_path / "pins.csv").read_text() == copied
+    rows = list(csv.DictReader(copied.splitlines()))
+    assert [int(row["vertex"]) for row in rows] == [one.vertex for one in panel.probing.pins]
+    assert float(rows[0]["k1"]) == panel.probing.pins[0].values["k1"]
+    assert rows[0]["lambert color"].startswith("#")
+    qtbot.mouseClick(panel.buttons["Clear"], Qt.MouseButton.LeftButton)
+    assert panel.table.rowCount() == 0
+    assert not (np.abs(pixels(window).astype(int) - yellow).max(axis=2) < 8).any()
+
+
+def test_beside_the_mesh_there_is_nothing(window, qtbot, panel) -> None:
+    qtbot.mouseClick(window.canvas, Qt.MouseButton.LeftButton, pos=QPoint(5, 5))
+    settled(qtbot, window)
+    assert panel.probing.current is None
+    assert panel.probing.pins == []
+
+
+def test_a_pin_cannot_be_saved_where_there_is_no_folder(window, panel, tmp_path) -> None:
+    panel.save(tmp_path / "missing" / "pins.csv")
+    assert "pins.csv" in window.banner.label.text()

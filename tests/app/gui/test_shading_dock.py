@@ -1,0 +1,160 @@
+"""The dock of material, model and display, clicked and typed in."""
+
+import math
+
+import numpy as np
+import pytest
+from qtpy.QtCore import Qt
+from qtpy.QtTest import QTest
+
+from app.picture import compose
+from app.pipeline import Pipeline
+from app.session import Method, Session, Substance
+from lutcore.materials import material
+from tests.app.gui.conftest import settled
+
+
+@pytest.fixture
+def panel(qtbot, window):
+    window.docks["shading"].raise_()
+    content = window.docks["shading"].fill()
+    settled(qtbot, window)
+    return content
+
+
+def pick(combo, text):
+    """Choose as a person does: `activated` is not emitted otherwise."""
+    combo.setFocus()
+    combo.setCurrentText(text)
+    combo.activated.emit(combo.currentIndex())
+
+
+def type_number(number, text):
+    number.setFocus()
+    number.selectAll()
+    QTest.keyClicks(number, text)
+    QTest.keyClick(number, Qt.Key.Key_Return)
+
+
+def test_a_preset_changes_material_sliders_figures_and_picture(qtbot, window, panel):
+    before = window.controller.outcome.composition.panels[0].content.rgb
+    pick(panel.material.preset, "marble")
+    settled(qtbot, window)
+    assert window.controller.session.material == "marble"
+    assert panel.material.scattering[2].value == 3.0 and panel.material.eta.value == 1.5
+    assert (window.controller.outcome.composition.panels[0].content.rgb != before).any()
+    known = material("marble")
+    length = known.mean_free_path[0] / known.beta[0]
+    assert panel.material.facts.cells["length", 0].text() == f"{length:.3g}"
+
+
+def test_a_slider_makes_a_changed_material_and_undo_takes_it_back(qtbot, window, panel):
+    slider = panel.material.absorption[0].slider
+    slider.setFocus()
+    QTest.keyClick(slider, Qt.Key.Key_PageUp)
+    settled(qtbot, window)
+    made = window.controller.session.material
+    assert isinstance(made, Substance) and made.name == "skin1, changed"
+    assert made.absorption[0] > 0.032 and made.absorption[1:] == (0.17, 0.48)
+    assert panel.material.preset.currentText() == "skin1, changed"
+    window.act(window.actions_["edit.undo"])
+    assert window.controller.session.material == "skin1"
+    assert panel.material.absorption[0].value == 0.032
+
+
+def test_sliders_back_at_the_named_values_are_the_named_material(qtbot, window, panel):
+    type_number(panel.material.scattering[0].number, "0.5")
+    assert window.controller.session.material.scattering[0] == 0.5
+    type_number(panel.material.scattering[0].number, "0.74")
+    assert window.controller.session.material == "skin1"
+
+
+def test_no_absorption_is_the_left_end(window, panel):
+    red = panel.material.absorption[0]
+    red.slider.setFocus()
+    QTest.keyClick(red.slider, Qt.Key.Key_Home)
+    assert red.value == 0.0 and window.controller.session.material.absorption[0] == 0.0
+
+
+def test_equal_ways_of_a_logarithmic_slider_are_equal_ratios(panel):
+    red = panel.material.scattering[0]
+    red.follow(0.1)
+    first = red.slider.value()
+    red.follow(1.0)
+    second = red.slider.value()
+    red.follow(10.0)
+    assert abs((red.slider.value() - second) - (second - first)) <= 1
+
+
+def test_the_scale_is_the_files_own_until_it_is_typed(qtbot, window, panel):
+    assert panel.own_unit.isChecked() and panel.unit.value == 1.0
+    type_number(panel.unit.number, "2.5")
+    settled(qtbot, window)
+    assert window.controller.session.mm_per_unit == 2.5 and not panel.own_unit.isChecked()
+    assert window.controller.outcome.mm_per_unit == 2.5
+    panel.own_unit.click()
+    assert window.controller.session.mm_per_unit is None
+
+
+def test_a_model_shows_its_own_parameters(qtbot, window, panel):
+    assert set(panel.model.form.controls) == {"hinges", "area"}
+    panel.model.form.controls["hinges"].setValue(8)
+    assert window.controller.session.model == Method("curvature-lut", {"hinges": 8.0})
+    pick(panel.model.names, "lambert")
+    assert window.controller.session.model == Method("lambert")
+    assert "hinges" not in panel.model.form.controls
+    settled(qtbot, window)
+
+
+def test_the_profile_and_shadows_are_chosen(qtbot, window, panel):
+    pick(panel.profile.names, "burley2015")
+    panel.shadows.setCurrentIndex(panel.shadows.findData("on"))
+    panel.shadows.activated.emit(panel.shadows.currentIndex())
+    settled(qtbot, window)
+    session = window.controller.session
+    assert session.profile.name == "burley2015" and session.shadows == "on"
+
+
+def test_exposure_is_automatic_or_in_stops(qtbot, window, panel):
+    automatic = window.controller.outcome.composition.exposure
+    assert panel.exposure.value == pytest.approx(math.log2(automatic), abs=1e-6)
+    panel.auto_exposure.click()
+    # What is shown stays, to the nine decimals that the slider's number keeps of the stops.
+    assert window.controller.session.exposure == pytest.approx(automatic, rel=1e-8)
+    before = window.controller.outcome.composition.panels[0].content.rgb.astype(int)
+    type_number(panel.exposure.number, f"{math.log2(automatic) - 1.0:.4f}")
+    settled(qtbot, window)
+    after = window.controller.outcome.composition.panels[0].content.rgb
+    lit = before.max(axis=1) > 40
+    assert (after[lit] < before[lit]).all()
+    panel.auto_exposure.click()
+    assert window.controller.session.exposure is None
+
+
+def test_flat_and_albedo_are_switches(window, panel):
+    panel.flat.click()
+    assert window.controller.session.flat
+    assert not panel.albedo.isEnabled()  # the sphere's file has no colours
+
+
+def test_all_controls_have_names_and_tips(panel):
+    from qtpy.QtWidgets import QAbstractSlider, QCheckBox, QComboBox
+
+    from app.gui.slider import Number
+
+    for kind in (QAbstractSlider, QCheckBox, QComboBox, Number):
+        for widget in panel.findChildren(kind):
+            if widget.isVisibleTo(panel):
+                name = widget.accessibleName() or getattr(widget, "text", str)()
+                assert name and widget.toolTip(), widget
+
+
+def test_the_view_shows_what_the_command_line_draws(qtbot, window, panel):
+    pick(panel.material.preset, "ketchup")
+    settled(qtbot, window)
+    outcome = window.controller.outcome
+    made = compose(outcome.session, Pipeline())
+    assert isinstance(outcome.session, Session)
+    np.testing.assert_array_equal(
+        made.panels[0].content.rgb, outcome.composition.panels[0].content.rgb
+    )
