@@ -32,7 +32,7 @@ def checked(surface: RawSurface) -> tuple[TriangleMesh, FloatArray | None]:
     Raises
     ------
     BadContentError
-        If faces use vertices that do not exist.
+        If faces use vertices that do not exist, or its arrays do not fit together.
     MeshError
         If no usable face is left.
     """
@@ -41,6 +41,7 @@ def checked(surface: RawSurface) -> tuple[TriangleMesh, FloatArray | None]:
         raise MeshError("it holds no vertices")
     if len(counts) == 0:
         raise MeshError(f"it holds {len(vertices)} points but no faces, so there is no surface")
+    _check_shapes(surface)
     _check_indices(surface.corners, counts, len(vertices))
     corners, counts = _without_slivers(surface)
     # A comparison with NaN is false.
@@ -49,6 +50,19 @@ def checked(surface: RawSurface) -> tuple[TriangleMesh, FloatArray | None]:
         corners, counts, vertices = _without_bad_positions(surface, corners, counts, good)
     faces = triangulated(vertices, corners, counts, surface.warnings)
     return TriangleMesh(vertices, faces), surface.colors
+
+
+def _check_shapes(surface: RawSurface) -> None:
+    """Foreign code may return anything, after a file that it nearly died of above all."""
+    vertices, corners, counts = surface.vertices, surface.corners, surface.counts
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or corners.shape != (int(counts.sum()),):
+        raise BadContentError(
+            f"its reader found {vertices.shape} coordinates and {len(corners)} corners of "
+            f"{len(counts)} faces, which do not fit together"
+        )
+    if surface.colors is not None and surface.colors.shape != vertices.shape:
+        surface.colors = None
+        surface.warnings.append("the vertex colours do not fit the vertices: not used")
 
 
 def _check_indices(corners: AnyArray, counts: AnyArray, vertex_count: int) -> None:

@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 
 from app.loading.errors import BadContentError
+from app.loading.gltf_buffers import Buffers
+from app.loading.scene_size import GRANTED, GROWTH
 from lutcore.arrays import AnyArray
 
 _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -18,13 +20,13 @@ class Arrays:
     ----------
     document : dict
         The file's JSON.
-    binary : bytes
-        Its binary chunk.
+    buffers : Buffers
+        Where its numbers are.
     """
 
-    def __init__(self, document: dict[str, Any], binary: bytes) -> None:
+    def __init__(self, document: dict[str, Any], buffers: Buffers) -> None:
         self._document = document
-        self._binary = binary
+        self._buffers = buffers
 
     def count(self, index: int) -> int:
         """Return the number of an accessor's values as it is declared, without looking at them.
@@ -72,7 +74,7 @@ class Arrays:
             values = self._view(
                 accessor["bufferView"], _natural(accessor, "byteOffset", 0), dtype, count, width
             )
-        elif count * width * dtype.itemsize <= 64 * len(self._binary):
+        elif count * width * dtype.itemsize <= GRANTED + GROWTH * self._buffers.size:
             # Zeros that a sparse part fills; its size bounds what is worth allocating.
             values = np.zeros((count, width), dtype)
         else:
@@ -115,24 +117,20 @@ class Arrays:
         view = _item(self._document, "bufferViews", index)
         if "EXT_meshopt_compression" in view.get("extensions", {}):
             raise BadContentError("it is compressed with meshopt", "export it uncompressed")
-        buffer = _item(self._document, "buffers", view["buffer"])
-        if view["buffer"] != 0 or "uri" in buffer:
-            raise BadContentError(
-                "its data lie in another file", "export it as one self-contained GLB file"
-            )
+        binary = self._buffers.get(view["buffer"])
         item = width * dtype.itemsize
         stride = _natural(view, "byteStride", 0) or item
         start = _natural(view, "byteOffset", 0) + offset
         needed = offset + (count - 1) * stride + item if count else 0
         length = _natural(view, "byteLength")
-        if needed > length or start - offset + length > len(self._binary) or stride < item:
+        if needed > length or start - offset + length > len(binary) or stride < item:
             raise BadContentError(
                 f"bufferView {index} holds {length} bytes, {needed} are needed, and the file has "
-                f"{len(self._binary)} bytes of data"
+                f"{len(binary)} bytes of data"
             )
         if count == 0:
             return np.empty((0, width), dtype)
-        return np.ndarray((count, width), dtype, self._binary, start, (stride, dtype.itemsize))
+        return np.ndarray((count, width), dtype, binary, start, (stride, dtype.itemsize))
 
 
 def _item(document: dict[str, Any], name: str, index: int) -> dict[str, Any]:

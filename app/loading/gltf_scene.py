@@ -43,14 +43,13 @@ def placed_primitives(document: dict[str, Any]) -> list[tuple[dict[str, Any], Fl
 
 def _placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, FloatArray]]:
     nodes = document.get("nodes", [])
-    waiting = [(root, np.eye(4)) for root in reversed(_roots(document, nodes))]
-    places = 0
-    while waiting:
+    # A node has one parent (glTF 2.0, section 3.5.2): more places than nodes means a cycle.
+    most = min(len(nodes), _MOST_PLACES)
+    roots = _roots(document, nodes)
+    places = len(roots)
+    waiting = [(root, np.eye(4)) for root in reversed(roots[:most])]
+    while waiting and places <= most:
         index, parent = waiting.pop()
-        places += 1
-        # A node has one parent (glTF 2.0, section 3.5.2): more places than nodes means a cycle.
-        if places > min(len(nodes), _MOST_PLACES):
-            raise BadContentError("its nodes do not form a tree")
         if not isinstance(index, int) or not 0 <= index < len(nodes):
             raise BadContentError(f"it refers to number {index} of its {len(nodes)} nodes")
         node = nodes[index]
@@ -60,7 +59,12 @@ def _placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, FloatArray]]
             if not isinstance(mesh, int) or not 0 <= mesh < len(document.get("meshes", [])):
                 raise BadContentError(f"node {index} uses mesh {mesh}, which does not exist")
             yield mesh, matrix
-        waiting.extend((child, matrix) for child in reversed(node.get("children", [])))
+        children = node.get("children", [])
+        places += len(children)
+        if places <= most:
+            waiting.extend((child, matrix) for child in reversed(children))
+    if places > most:
+        raise BadContentError("its nodes do not form a tree")
 
 
 def _roots(document: dict[str, Any], nodes: list[dict[str, Any]]) -> list[int]:

@@ -2,10 +2,8 @@
 
 import codecs
 import hashlib
-import importlib
 import os
 import stat
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,8 +12,10 @@ import numpy as np
 
 from app.loading.checks import checked
 from app.loading.errors import BadContentError, UnreadableFileError
-from app.loading.sniff import FORMATS, sniff
-from app.loading.surface import RawSurface
+from app.loading.formats import FORMATS, reader
+from app.loading.packed import is_packed, unpacked
+from app.loading.sniff import sniff
+from app.loading.texture import Texture, textured
 from lutcore.arrays import FloatArray
 from lutcore.errors import MeshError
 from lutcore.health import MeshHealth, inspect
@@ -37,7 +37,11 @@ class LoadedMesh:
     path : Path
         The file.
     digest : str
-        SHA-256 of the file's bytes, hexadecimal.
+        SHA-256 of the file's bytes, hexadecimal; followed by those of the files it names, if any.
+    mm_per_unit : float or None
+        Size of a mesh unit, where the file says it.
+    texture : Texture or None
+        A picture of albedo that is wrapped around the mesh.
     """
 
     mesh: TriangleMesh
@@ -45,6 +49,8 @@ class LoadedMesh:
     warnings: tuple[str, ...]
     path: Path
     digest: str
+    mm_per_unit: float | None = None
+    texture: Texture | None = None
 
     @cached_property
     def health(self) -> MeshHealth:
@@ -53,7 +59,7 @@ class LoadedMesh:
 
 
 def load_mesh(path: str | os.PathLike[str]) -> LoadedMesh:
-    """Read a mesh from a PLY, OBJ, STL, OFF, GLB or VTP file.
+    """Read a mesh from a file in one of `app.loading.formats.FORMATS`, packed with gzip or not.
 
     Parameters
     ----------
@@ -76,15 +82,20 @@ def load_mesh(path: str | os.PathLike[str]) -> LoadedMesh:
     path = Path(path)
     try:
         content = _content(path)
-        digest = hashlib.sha256(content).hexdigest()
+        digest = hashlib.sha256(content)
+        name = path
+        if is_packed(content):
+            content = unpacked(content)
+            name = path.with_suffix("") if path.suffix.lower() in (".gz", ".gzip") else path
         content = _without_mark(content)
-        suffix = path.suffix[1:].lower()
+        suffix = name.suffix[1:].lower()
         found = sniff(content, suffix)
         # Absurd numbers overflow before they are found out: that is said by an error, not by a
         # line on standard error.
         with np.errstate(all="ignore"):
-            surface = _reader(found)(content)
+            surface = reader(found, path.parent)(content)
             mesh, colors = checked(surface)
+            texture = textured(surface, mesh)
     except BadContentError as error:
         raise UnreadableFileError(f"{path}: {error.problem}; {error.advice}") from error
     except MeshError as error:
@@ -97,13 +108,11 @@ def load_mesh(path: str | os.PathLike[str]) -> LoadedMesh:
     if suffix != found:
         called = f"is called .{suffix}" if suffix in FORMATS else "has an unknown ending"
         warnings.insert(0, f"the file {called} but holds {found.upper()}: read as {found.upper()}")
-    return LoadedMesh(mesh, colors, tuple(warnings), path, digest)
-
-
-def _reader(name: str) -> Callable[[bytes], RawSurface]:
-    # Imported by name, so that a reader costs nothing until a file needs it.
-    read: Callable[[bytes], RawSurface] = importlib.import_module(f"app.loading.{name}").read
-    return read
+    for other in surface.others:
+        digest.update(other)
+    return LoadedMesh(
+        mesh, colors, tuple(warnings), path, digest.hexdigest(), surface.mm_per_unit, texture
+    )
 
 
 def _without_mark(content: bytes) -> bytes:

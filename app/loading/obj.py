@@ -5,11 +5,13 @@ faces by material, which changes count and order, and counts negative indices fr
 """
 
 import re
+from pathlib import Path
 
 import numpy as np
 
 from app.loading.colors import normalized
 from app.loading.errors import BadContentError
+from app.loading.obj_texture import texture_of
 from app.loading.surface import RawSurface
 from app.loading.text import line_of, note_open_end, numbers, whole
 from lutcore.arrays import AnyArray, FloatArray
@@ -20,13 +22,15 @@ _TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 _WITH_COLOR = 6
 
 
-def read(content: bytes) -> RawSurface:
-    """Read an OBJ file; texture coordinates, normals, groups and materials are passed over.
+def read(content: bytes, folder: Path) -> RawSurface:
+    """Read an OBJ file; normals, groups and all of materials but textures are passed over.
 
     Parameters
     ----------
     content : bytes
         The whole file.
+    folder : Path
+        Where it lies, for its textures.
 
     Returns
     -------
@@ -45,7 +49,10 @@ def read(content: bytes) -> RawSurface:
     note_open_end(lines, warnings)
     vertices, colors = _vertices(joined, lines, warnings)
     corners, counts = _faces(joined, len(vertices))
-    return RawSurface(vertices, corners, counts, colors, warnings)
+    surface = RawSurface(vertices, corners, counts, colors, warnings)
+    lines_of_faces = list(_FACE.finditer(joined)) if b"mtllib" in joined else []
+    surface.texture = texture_of(joined, lines_of_faces, counts, folder, warnings, surface.others)
+    return surface
 
 
 def _vertices(

@@ -8,6 +8,26 @@ from lutcore.arrays import AnyArray, FloatArray
 
 
 @dataclass
+class RawTexture:
+    """Pictures that a file wraps around its surface, as it has them.
+
+    Parameters
+    ----------
+    corners : ndarray of float64, shape=(c, 2)
+        Place on the picture of each corner of the polygons: (0, 0) at the lower left, NaN for
+        none.
+    which : ndarray of int, shape=(f,)
+        Each polygon's picture, -1 for none.
+    images : list of (str, bytes)
+        Name for messages, and encoded picture.
+    """
+
+    corners: FloatArray
+    which: AnyArray
+    images: list[tuple[str, bytes]]
+
+
+@dataclass
 class RawSurface:
     """Polygons over vertices as the file has them; `app.loading.checks` makes a mesh of them.
 
@@ -23,6 +43,12 @@ class RawSurface:
         sRGB-encoded vertex colours, 0 to 1.
     warnings : list of str
         What the reader passed over or had to assume.
+    mm_per_unit : float or None
+        Size of a unit, where the file says it.
+    others : list of bytes
+        Contents of the files beside it that were read along.
+    texture : RawTexture or None
+        What is wrapped around it.
     """
 
     vertices: FloatArray
@@ -30,6 +56,9 @@ class RawSurface:
     counts: AnyArray
     colors: FloatArray | None = None
     warnings: list[str] = field(default_factory=list)
+    mm_per_unit: float | None = None
+    others: list[bytes] = field(default_factory=list)
+    texture: RawTexture | None = None
 
     @classmethod
     def of_triangles(

@@ -1,4 +1,4 @@
-"""The part of reading VTP that calls VTK; runs in the child process only."""
+"""The part of reading VTK's own files that calls VTK; runs in the child process only."""
 
 import re
 from typing import Any
@@ -9,13 +9,15 @@ from app.loading.colors import FACE_COLORS_UNUSED, normalized
 from app.loading.errors import BadContentError
 from app.loading.strips import strip_faces
 from app.loading.surface import RawSurface
+from app.loading.vtk_cells import cells, grid_polygons
 from lutcore.arrays import AnyArray, FloatArray
+from lutcore.errors import MeshError
 
 _COLOR_NAMES = ("rgb", "rgba", "color", "colors", "vertex_colors", "vertexcolors")
 
 
 def read(content: bytes) -> RawSurface:
-    """Read a VTP file with VTK.
+    """Read a VTP, VTU or legacy VTK file with VTK.
 
     Parameters
     ----------
@@ -31,56 +33,84 @@ def read(content: bytes) -> RawSurface:
     ------
     BadContentError
         If VTK reports an error or returns arrays that do not fit together.
+    lutcore.errors.MeshError
+        If it holds data of a kind that has no surface.
     """
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
     log = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(log)
-    reader = vtkXMLPolyDataReader()
-    reader.ReadFromInputStringOn()
-    reader.SetInputString(content)  # type: ignore[call-overload]  # takes bytes as well
+    reader = _reader(content)
     reader.Update()
-    _raise_reported(log.GetOutput())
+    raise_reported(log.GetOutput())
     data = reader.GetOutput()
+    if data is None:
+        raise BadContentError("VTK finds no data in it")
+    if not (data.IsA("vtkPolyData") or data.IsA("vtkUnstructuredGrid")):
+        kind = data.GetClassName().removeprefix("vtk")
+        raise MeshError(f"it holds data of VTK's kind {kind}, which have no triangles or polygons")
     points = data.GetPoints()
     if points is None or points.GetNumberOfPoints() == 0:
         return RawSurface(np.empty((0, 3)), np.empty(0, np.int64), np.empty(0, np.int64))
     vertices = np.array(vtk_to_numpy(points.GetData()), dtype=np.float64)
     warnings: list[str] = []
-    corners, counts = _cells(data.GetPolys())
-    strips, lengths = _cells(data.GetStrips())
-    if len(strips):
-        faces = strip_faces(strips, lengths)
-        warnings.append(f"{len(faces)} triangles come from triangle strips")
-        corners = np.concatenate((corners, faces.reshape(-1)))
-        counts = np.concatenate((counts, np.full(len(faces), 3)))
+    if data.IsA("vtkPolyData"):
+        corners, counts = _polygons(data, warnings)
+    else:
+        corners, counts = grid_polygons(data, warnings)
     if _color_array(data.GetCellData()) is not None:
         warnings.append(FACE_COLORS_UNUSED)
     return RawSurface(vertices, corners, counts, _colors(data.GetPointData(), warnings), warnings)
 
 
-def _raise_reported(log: str) -> None:
+def _reader(content: bytes) -> Any:
+    from vtkmodules.vtkIOLegacy import vtkDataSetReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+    reader: Any
+    if content.startswith(b"# vtk"):
+        reader = vtkDataSetReader()
+        reader.ReadFromInputStringOn()
+        reader.SetBinaryInputString(content, len(content))
+        return reader
+    grid = b"<UnstructuredGrid" in content[:4096]
+    reader = vtkXMLUnstructuredGridReader() if grid else vtkXMLPolyDataReader()
+    reader.ReadFromInputStringOn()
+    reader.SetInputString(content)
+    return reader
+
+
+def _polygons(data: Any, warnings: list[str]) -> tuple[AnyArray, AnyArray]:
+    corners, counts = cells(data.GetPolys())
+    strips, lengths = cells(data.GetStrips())
+    if len(strips):
+        faces = strip_faces(strips, lengths)
+        warnings.append(f"{len(faces)} triangles come from triangle strips")
+        corners = np.concatenate((corners, faces.reshape(-1)))
+        counts = np.concatenate((counts, np.full(len(faces), 3)))
+    return corners, counts
+
+
+def raise_reported(log: str) -> None:
+    """Turn what VTK wrote to its output window into an error.
+
+    Parameters
+    ----------
+    log : str
+        All that it wrote.
+
+    Raises
+    ------
+    BadContentError
+        If there is an error among it.
+    """
     # "ERROR: In file.cxx, line 1" / "vtkXMLDataParser (0x5): what is wrong", one pair each.
     found = re.search(r"ERR(?:OR)?[:|].*?\n?.*?\(0x[0-9a-f]+\): *([^\n]*)", log[:4000], re.DOTALL)
     if found:
         raise BadContentError(f"VTK says: {found.group(1).strip()}")
     if "ERR" in log:
         raise BadContentError(f"VTK says: {' '.join(log.split())[:200]}")
-
-
-def _cells(cells: Any) -> tuple[AnyArray, AnyArray]:
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
-    if cells is None or cells.GetNumberOfCells() == 0:
-        return np.empty(0, np.int64), np.empty(0, np.int64)
-    corners = np.array(vtk_to_numpy(cells.GetConnectivityArray()), dtype=np.int64)
-    offsets = np.array(vtk_to_numpy(cells.GetOffsetsArray()), dtype=np.int64)
-    counts = np.diff(offsets)
-    if offsets[0] != 0 or (counts < 0).any() or offsets[-1] != len(corners):
-        raise BadContentError("its cell offsets do not fit its connectivity")
-    return corners, counts
 
 
 def _colors(attributes: Any, warnings: list[str]) -> FloatArray | None:
