@@ -98,6 +98,10 @@ def test_values_are_the_packages_own(method):
     found = principal_curvatures(mesh, method, SCALE)
     # MeshLab computes in single precision, and the driver's centring moves last bits.
     limit = (1e-5 if method.startswith("meshlab") else 1e-9) * np.abs(expected).max()
+    if method == "meshlab-apss":
+        # From one process to the next, ten vertices of these 1,500 differ by up to 1.4e-4: the
+        # projection stops after a step that falls below a threshold or does not.
+        limit *= 50.0
     assert_allclose(found.k2, expected[0], atol=limit)
     assert_allclose(found.k1, expected[1], atol=limit)
 
