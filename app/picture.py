@@ -151,6 +151,28 @@ def render(session: Session, pipeline: Pipeline) -> Picture:
     """
     made = compose(session, pipeline)
     pipeline.progress(0.95, "drawing")
+    return picture_of(made)
+
+
+def picture_of(made: Composition) -> Picture:
+    """Draw what was composed.
+
+    Parameters
+    ----------
+    made : Composition
+        From `compose`.
+
+    Returns
+    -------
+    Picture
+        See `render`.
+
+    Raises
+    ------
+    DrawingError
+        If this machine has no working OpenGL.
+    """
+    session = made.session
     drawn = draw(made.panels, session.size, session.background, made.rows)
     return Picture(
         drawn.image, made.camera, made.exposure, made.ranges, made.difference, drawn.backend
@@ -293,17 +315,16 @@ class _Studio:
     def _colored(self) -> list[Single]:
         """Shade what is compared under one exposure: a darker one is to look darker."""
         studios = [self._studio(one) for one in alone(self.session)]
-        linear = [one._linear(one.session.model) for one in studios]
         if self.exposure is None:
             # Models are of one material, so nearly as bright as the first. Among materials the
             # brightest decides: what is clipped could not be compared.
-            counted = linear if self.session.compared_by == "material" else linear[:1]
-            self.exposure = min(auto_exposure(light) for light in counted)
+            counted = studios if self.session.compared_by == "material" else studios[:1]
+            self.exposure = min(auto_exposure(one._linear(one.session.model)) for one in counted)
+        everywhere = np.ones(len(self.subject.mesh.vertices), dtype=bool)
         singles = []
-        for one, light, label in zip(studios, linear, labels(self.session), strict=True):
+        for one, label in zip(studios, labels(self.session), strict=True):
             one.exposure = self.exposure
-            surface = one._lit(one.session.model, label)
-            singles.append(Single(surface, np.ones(len(light), dtype=bool)))
+            singles.append(Single(one._lit(one.session.model, label), everywhere))
         return singles
 
     def _curved(self) -> list[Single]:
@@ -318,7 +339,8 @@ class _Studio:
             studio = self._studio(replace(session, range=ends))
             surface = studio._curvature(name)[0].content
             assert isinstance(surface, Surface)
-            surface = dataclasses.replace(surface, caption=label)
+            said = f"{label} ({surface.caption})" if surface.caption else label
+            surface = dataclasses.replace(surface, caption=said)
             singles.append(Single(surface, studio._curvatures().estimated))
         return singles
 

@@ -188,7 +188,7 @@ def with_readings(
     scene = Scene.of(inputs, inputs.curvatures)
     irradiance, scene = scene.irradiance, scene.at(chosen)
     here = _narrowed(inputs, chosen)
-    seen = _seen(session, pipeline, camera, frame, found.vertex)
+    seen = _seen(session, pipeline, camera, found.vertex)
     others = [Method(name) for name in shading_models() if name != session.model.name]
     readings = []
     for method in (session.model, *others):
@@ -218,24 +218,12 @@ def _narrowed(inputs: "ShadingInputs", chosen: AnyArray) -> "ShadingInputs":
     return replace(here, detail=few)
 
 
-def _seen(
-    session: Session, pipeline: Pipeline, camera: Camera, frame: FloatArray, vertex: int
-) -> FloatArray:
+def _seen(session: Session, pipeline: Pipeline, camera: Camera, vertex: int) -> FloatArray:
     """Return the factor from exitance to what the picture shows, as `app.picture` has it."""
-    from lutcore.color import srgb_decode
-    from lutcore.fresnel import transmittance
+    from app.leaving import leaving
 
-    subject = pipeline.subject(session)
-    normal = pipeline.curvatures(session).normals[vertex]
-    towards = frame[2]
-    if camera.height is None:
-        towards = np.asarray(camera.position) - subject.mesh.vertices[vertex]
-        towards = towards / np.linalg.norm(towards)
-    factor = transmittance(np.array([abs(normal @ towards)]), pipeline.material(session).eta)
-    colors = subject.loaded.colors
-    if session.albedo and colors is not None:
-        return np.asarray(factor * srgb_decode(colors[vertex]))
-    return np.asarray(np.repeat(factor, 3))
+    found = leaving(session, pipeline, camera)[vertex]
+    return np.asarray(np.broadcast_to(found, (3,)))
 
 
 def _reading(

@@ -132,7 +132,7 @@ def _shot(
             for one in drawn
             if isinstance(one.panel.content, Surface) and one.panel.content.wipe
         ]
-        return Drawing(_grab(window, size), backend_of(window)), wipes
+        return Drawing(grab(window, size), backend_of(window)), wipes
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,8 +196,7 @@ def fill(
     """
     shade = color(background)
     shapes: Shapes = {}
-    # A grid is looked at as a whole, so from farther away.
-    height = size[1] * (_GRID_LETTERS if rows > 1 else 1.0)
+    height = _height(size, rows)
     letters = _caption_letters(panels, (size[0], height))
     made = []
     left, row = 0.0, 0
@@ -218,6 +217,29 @@ def fill(
         made.append(Drawn(panel, renderer, actor))
         left = right
     return made
+
+
+def refill_bar(drawn: Drawn, scale: ColorScale, size: tuple[int, int], rows: int = 1) -> None:
+    """Explain another scale where a colour bar is.
+
+    Parameters
+    ----------
+    drawn : Drawn
+        A colour bar that `fill` put there.
+    scale : ColorScale
+        What to explain now.
+    size : tuple of 2 ints
+        Of the window, pixels.
+    rows : int
+        See `fill`.
+    """
+    drawn.renderer.RemoveAllViewProps()
+    fill_bar(drawn.renderer, scale, (drawn.panel.width * size[0], _height(size, rows)))
+
+
+def _height(size: tuple[int, int], rows: int) -> float:
+    """Height that letters are in proportion to: a grid is looked at from farther away."""
+    return size[1] * (_GRID_LETTERS if rows > 1 else 1.0)
 
 
 def _caption_letters(panels: Sequence[Panel], size: tuple[float, float]) -> int:
@@ -261,7 +283,21 @@ def _fill_mesh(
     return fill_surface(renderer, surface, camera, shapes[key], around)
 
 
-def _grab(window: object, size: tuple[int, int]) -> Image:
+def grab(window: object, size: tuple[int, int]) -> Image:
+    """Return what a window shows.
+
+    Parameters
+    ----------
+    window : vtkRenderWindow
+        Rendered.
+    size : tuple of 2 ints
+        Width and height, pixels.
+
+    Returns
+    -------
+    ndarray of uint8, shape=(height, width, 3)
+        sRGB, the first row at the top.
+    """
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 

@@ -206,12 +206,22 @@ def fill_surface(
     else:
         actor.GetProperty().LightingOff()
     renderer.AddActor(actor)
-    if surface.strokes is not None:
-        from app.stroke_actor import stroke_actor
-
-        renderer.AddActor(stroke_actor(surface.strokes, origin))
+    _add_strokes(renderer, surface, origin)
     aim(renderer, camera, origin)
     return actor
+
+
+def _add_strokes(renderer: vtkRenderer, surface: Surface, origin: Vector) -> None:
+    second = None if surface.wipe is None else surface.wipe.surface
+    for one in (surface, second):
+        if one is None or one.strokes is None:
+            continue
+        from app.stroke_actor import stroke_actor
+
+        actor = stroke_actor(one.strokes, origin)
+        if second is not None:
+            wipe_shader.confine(actor, left=one is surface)
+        renderer.AddActor(actor)
 
 
 def actor_of(surface: Surface, shape: vtkPolyData) -> vtkActor:

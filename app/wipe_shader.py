@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
 from lutcore.arrays import AnyArray
 
@@ -76,6 +76,40 @@ def place(actor: vtkActor, column: float) -> None:
         The first column of the window's pixels that shows the second.
     """
     actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniformf(_COLUMN, column)
+
+
+def place_all(renderer: vtkRenderer, column: float) -> None:
+    """Move the divider of all that has one: mesh, coarse mesh and strokes.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        Where they are.
+    column : float
+        See `place`.
+    """
+    for actor in renderer.GetActors():
+        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+        names = map(uniforms.GetNthUniformName, range(uniforms.GetNumberOfUniforms()))
+        if _COLUMN in names:
+            place(actor, column)
+
+
+def confine(actor: vtkActor, left: bool) -> None:
+    """Draw an actor on one side of the divider only.
+
+    Parameters
+    ----------
+    actor : vtkActor
+        One that has no second way to be shown.
+    left : bool
+        Which side.
+    """
+    tag, other = "//VTK::Color::Impl", f"!{_LEFT}" if left else _LEFT
+    actor.GetShaderProperty().AddFragmentShaderReplacement(
+        tag, True, f"if ({other}) discard;\n{tag}", False
+    )
+    place(actor, _FAR)
 
 
 def either(actor: vtkActor, first: str, second: str) -> str:

@@ -19,7 +19,6 @@ def main() -> None:
 
 
 def _take() -> None:
-    from qtpy.QtCore import Qt
     from qtpy.QtTest import QTest
     from qtpy.QtWidgets import QApplication
 
@@ -50,7 +49,7 @@ def _take() -> None:
     window.act(window.actions_["window.choose"])
     panel = window.docks["choose"].fill()
     wait()
-    QTest.mouseClick(panel.map, Qt.MouseButton.LeftButton)
+    panel.map.click()
     take("window-choose")
     window.close()
 

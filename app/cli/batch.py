@@ -100,6 +100,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     parser.add_argument(
         "--difference", action="store_const", const=True, help="CIEDE2000 against the first"
     )
+    options.add_repairs(parser)
     options.add_shading(parser, words)
     options.add_curvature(parser, words)
     options.add_peers(parser)

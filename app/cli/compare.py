@@ -74,10 +74,27 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit code.
     """
-    return perform(arguments, _session, _compare)
+    return perform(arguments, session_of, _compare)
 
 
-def _session(arguments: argparse.Namespace) -> Session:
+def session_of(arguments: argparse.Namespace) -> Session:
+    """Return the session that the arguments describe.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of the command.
+
+    Returns
+    -------
+    Session
+        Of this command's view.
+
+    Raises
+    ------
+    SessionError, ParameterError
+        If a file or a value is not right.
+    """
     fixed: dict[str, object] = {"view": "compare"}
     if arguments.models:
         names = [name.strip() for name in arguments.models.split(",")]

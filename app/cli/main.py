@@ -20,6 +20,7 @@ COMMANDS = {
     "curvature": "measure curvature: a picture, or data",
     "shade": "shade as a translucent material: a picture, or data",
     "compare": "shading models side by side",
+    "draw": "a saved session again, whatever it shows",
     "verify": "redraw a picture from its own metadata, and compare",
     "choose": "which shading model is enough for a scene, and why",
     "stability": "where curvature estimators and shading models fail, and by how much",

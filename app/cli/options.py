@@ -57,15 +57,7 @@ def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> argpars
     parser.add_argument(
         "--smoothing", type=float, metavar="VOXELS", help="blur a volume before, sigma (0)"
     )
-    parser.add_argument(
-        "--repair",
-        type=_repair,
-        action="append",
-        dest="repairs",
-        metavar="KIND[=VALUE]",
-        help="repair the mesh before anything else; may be repeated, done in order: "
-        f"{'; '.join(_repair_help(name) for name in KINDS)}".replace("%", "%%"),
-    )
+    add_repairs(parser)
     parser.set_defaults(own_mesh=optional)
     output = parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="OUT", help="result"
@@ -79,6 +71,25 @@ def add_mesh(parser: argparse.ArgumentParser, optional: bool = False) -> argpars
     parser.add_argument("--save-session", type=Path, metavar="FILE", help="write the session too")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     return output
+
+
+def add_repairs(parser: argparse.ArgumentParser) -> None:
+    """Add the flag that repairs a mesh.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    """
+    parser.add_argument(
+        "--repair",
+        type=_repair,
+        action="append",
+        dest="repairs",
+        metavar="KIND[=VALUE]",
+        help="repair the mesh before anything else; may be repeated, done in order: "
+        f"{'; '.join(_repair_help(name) for name in KINDS)}".replace("%", "%%"),
+    )
 
 
 def add_picture(parser: argparse.ArgumentParser) -> None:

@@ -41,6 +41,9 @@ class Apart(QGroupBox):
         session = outcome.session
         if list(found) != list(self.texts):
             self._make(list(found))
+        self.setVisible(bool(found))
+        if not found:
+            return
         unit, title = "", "Difference, CIEDE2000"
         if session.compared_by == "estimator":
             quantity = QUANTITIES[session.quantity]
@@ -53,7 +56,6 @@ class Apart(QGroupBox):
                 f"{label}\nmean {one['mean']:.3g}{unit}\n99 % are below {one['p99']:.3g}{unit}\n"
                 f"worst {one['max']:.3g}{unit}, vertex {one['vertex']}\nat {place}"
             )
-        self.setVisible(bool(found))
 
     def _make(self, labels: list[str]) -> None:
         for widget in (*self.texts.values(), *self.buttons.values()):

@@ -1,5 +1,7 @@
 """A message above the view that stays until it is read."""
 
+from collections.abc import Callable
+
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QWidget
 
@@ -32,7 +34,12 @@ class Banner(QFrame):
         close.clicked.connect(self.hide)
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 4, 4)
+        self.button = QToolButton(self)
+        self.button.hide()
+        self.button.clicked.connect(self._on_button)
+        self._answer: Callable[[], None] | None = None
         row.addWidget(self.label, 1)
+        row.addWidget(self.button, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(close, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()
 
@@ -44,5 +51,32 @@ class Banner(QFrame):
         text : str
             What is wrong, where, and what to do.
         """
+        self._answer = None
+        self.button.hide()
         self.label.setText(text)
         self.show()
+
+    def offer(self, text: str, answer: str, call: Callable[[], None]) -> None:
+        """Show a message with a button.
+
+        Parameters
+        ----------
+        text : str
+            What can be done.
+        answer : str
+            What the button says.
+        call : callable
+            Does it; the message goes away.
+        """
+        self.label.setText(text)
+        self.button.setText(answer)
+        self.button.setAccessibleName(answer)
+        self._answer = call
+        self.button.show()
+        self.show()
+
+    def _on_button(self) -> None:
+        answer, self._answer = self._answer, None
+        self.hide()
+        if answer is not None:
+            answer()

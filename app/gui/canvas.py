@@ -11,16 +11,18 @@ from qtpy.QtCore import QEvent, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from qtpy.QtWidgets import QWidget
 from vtkmodules.qt.QVTKRenderWindowInteractor import QVTKRenderWindowInteractor
-from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderWindow
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from app.backend import Backend, backend_of
 from app.gui import orbit
 from app.gui.coarse import Coarse
 from app.gui.stand_in import StandIn
 from app.picture import Composition
-from app.render import Drawn, fill
-from app.scene import Surface, aim, recolor
+from app.render import Drawn, Panel, fill, refill_bar
+from app.scene import ColorScale, Surface, aim, recolor
 from app.session import Camera, Vector
+from app.shader.drawing import PixelLight
+from app.shader.look import PixelLook
 
 # Slower than this a moving picture is no longer seen as moving.
 _SLOW = 1.0 / 15.0
@@ -111,6 +113,8 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         self.camera: Camera | None = None
         self.origin: Vector = (0.0, 0.0, 0.0)
         """What the geometry is drawn relative to: subtract it from world coordinates."""
+        self.by_pixel: PixelLight | None = None
+        """What shades the first mesh by the pixel; None while vertices have the colours."""
         self.tools: list[Tool] = []
         """Asked in order, before the camera, who wants a drag."""
         self._taken: Tool | None = None
@@ -135,18 +139,56 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         camera : Camera
             Where from: the camera may have moved on while the colours were computed.
         """
+        if self.by_pixel is not None and not self.by_pixel.look.fits(made.session):
+            self.shade_by_pixel(None)
         before, self.composition = self.composition, made
         self.camera = camera
         if before is not None and _same_but_colors(before, made):
-            for drawn, panel in zip(self.drawn, made.panels, strict=True):
-                if drawn.actor is not None and isinstance(panel.content, Surface):
-                    recolor(drawn.actor, panel.content)
+            size = tuple(self.window_.GetSize())
+            for index, (drawn, panel) in enumerate(zip(self.drawn, made.panels, strict=True)):
+                if drawn.actor is not None:
+                    if self.by_pixel is None or index > 0:
+                        self._recolor(index, panel)
+                elif isinstance(panel.content, ColorScale):
+                    refill_bar(drawn, panel.content, size, made.rows)
             self._stand_in.recolor([panel.content for panel in made.panels])
             self._aim()
             self.recolored.emit()
         else:
             self._fill(made, before)
         self.update()
+
+    def shade_by_pixel(self, look: PixelLook | None) -> None:
+        """Shade the first mesh in the fragment shader, or show the colours of its vertices.
+
+        Parameters
+        ----------
+        look : PixelLook or None
+            Of what is shown. Move `by_pixel` before the next frame.
+        """
+        if self.by_pixel is not None:
+            self.by_pixel.remove()
+            self.by_pixel = None
+            self.resend()  # colours that came meanwhile were not sent
+        if look is not None and self.drawn and self.drawn[0].actor is not None:
+            coarse = self._stand_in.of(0)
+            actors = [(self.drawn[0].actor, None), *([coarse] if coarse else [])]
+            self.by_pixel = PixelLight(look, actors, self.origin)
+
+    def resend(self) -> None:
+        """Send the first mesh's colours to the renderer once more."""
+        if self.composition is not None:
+            self._recolor(0, self.composition.panels[0])
+
+    @property
+    def coarsely(self) -> bool:
+        """Whether something moves and is drawn coarsely."""
+        return self._stand_in.shown
+
+    def _recolor(self, index: int, panel: Panel) -> None:
+        actor = self.drawn[index].actor
+        if actor is not None and isinstance(panel.content, Surface):
+            recolor(actor, panel.content)
 
     def place_camera(self, camera: Camera) -> None:
         """See the same from elsewhere.
@@ -168,9 +210,12 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         found : Coarse or None
             Made of the mesh that is shown, or will be.
         """
+        look = None if self.by_pixel is None else self.by_pixel.look
+        self.shade_by_pixel(None)
         self._stand_in.coarse = found
         if self.drawn:
             self._stand_in.fill(self.drawn, self.origin)
+            self.shade_by_pixel(look)
             self.recolored.emit()
 
     def stir(self) -> None:
@@ -179,22 +224,6 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self._stand_in.show(self.drawn, True)
         self._still.start()
         self.update()
-
-    def actors(self, drawn: Drawn) -> list[vtkActor]:
-        """Return what a panel draws: its mesh, and the coarse one that may stand in for it.
-
-        Parameters
-        ----------
-        drawn : Drawn
-            One of `drawn`.
-
-        Returns
-        -------
-        list of vtkActor
-            None, one or both.
-        """
-        coarse = self._stand_in.actor(self.drawn.index(drawn))
-        return [one for one in (drawn.actor, coarse) if one is not None]
 
     def renderers(self) -> Sequence[Drawn]:
         """Return what holds a mesh.
@@ -207,7 +236,7 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         return [one for one in self.drawn if one.actor is not None]
 
     def _fill(self, made: Composition, before: Composition | None) -> None:
-        window = self.window_
+        window, self.by_pixel = self.window_, None
         for renderer in list(window.GetRenderers()):
             window.RemoveRenderer(renderer)
         if before is None or _mesh(before) is not _mesh(made):
@@ -395,9 +424,7 @@ def _alike(one: Any, other: Any) -> bool:
             and (one.rgb is None) == (other.rgb is None)
             and one.normals is other.normals
             and _texture(one) is _texture(other)
+            and one.strokes is other.strokes
             and (one.wipe is None) == (other.wipe is None)
         )
-    if isinstance(one, Surface) or isinstance(other, Surface):
-        return False
-    ends = (one.low, one.high, one.title) == (other.low, other.high, other.title)
-    return ends and bool((one.colors == other.colors).all())
+    return isinstance(one, ColorScale) and isinstance(other, ColorScale)

@@ -18,10 +18,13 @@ class Coarse:
         Which vertices of the fine mesh it has.
     mesh : TriangleMesh
         The coarse mesh.
+    fine : TriangleMesh
+        What it stands in for.
     """
 
     vertices: AnyArray
     mesh: TriangleMesh
+    fine: TriangleMesh
 
 
 def coarse(mesh: TriangleMesh, most: int) -> Coarse | None:
@@ -62,7 +65,7 @@ def coarse(mesh: TriangleMesh, most: int) -> Coarse | None:
     count = len(used)
     key = (turned[:, 0] * count + turned[:, 1]) * count + turned[:, 2]
     faces = turned[np.unique(key, return_index=True)[1]]
-    return Coarse(first, TriangleMesh(mesh.vertices[first], faces)) if len(faces) else None
+    return Coarse(first, TriangleMesh(mesh.vertices[first], faces), mesh) if len(faces) else None
 
 
 def _cells(points: FloatArray, cell: float) -> AnyArray:

@@ -98,6 +98,8 @@ class Controller:
         self.outcome: Outcome | None = None
         self.range_locked = False
         """Whether another mesh is shown in the range of this one, to compare them."""
+        self.follows: Callable[[set[str]], bool] | None = None
+        """Told which fields changed; True if the view shows that itself, and asks when it rests."""
         self._size = (800, 600)
         self._held: float | None = None
         self._subject: Subject | None = None
@@ -127,12 +129,38 @@ class Controller:
 
         def opened(_: Subject) -> None:
             if file is None:
+                unchanged = self.document.path is None and not self.document.dirty
                 self.document.put("open mesh", session)
+                if unchanged:
+                    self.document.rest()
             else:
                 self.document.open(session, file)
 
         # Loaded before the document changes, so that a broken file leaves everything as it was.
         self.run("open", lambda _: self.pipeline.subject(session), opened, supersede=True)
+
+    def save(self, path: Path) -> bool:
+        """Write the session as a file.
+
+        Parameters
+        ----------
+        path : Path
+            Where to; gets the ending of sessions if it has another.
+
+        Returns
+        -------
+        bool
+            False if it cannot be written; the message was emitted then.
+        """
+        if path.suffix.lower() != SESSION_SUFFIX:
+            path = path.with_name(path.name + SESSION_SUFFIX)
+        try:
+            self.document.save(path)
+        except CurvelightError as error:
+            self.failed.emit(str(error))
+            return False
+        self.noted.emit(f"saved {path}")
+        return True
 
     def _of_mesh(self, mesh: str) -> Session:
         """Keep how things are shown, and drop what belonged to the old mesh."""
@@ -278,7 +306,7 @@ class Controller:
 
     def _on_change(self, session: Session, before: Session) -> None:
         changed = {name for name in Session.__struct_fields__ if _differ(session, before, name)}
-        if changed:
+        if changed and not (self.follows and self.follows(changed)):
             self.refresh(supersede=not changed <= _LIVE)
 
     def _on_shown(self, outcome: Outcome) -> None:

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from psygnal import Signal
 
 from app import session as state
+from app.samples import PREFIX
 from app.session import Camera, Session
 
 _MOST_STEPS = 500
@@ -121,6 +122,34 @@ class Document:
         self._last = label, now
         self._show(session)
 
+    @property
+    def dragging(self) -> bool:
+        """Whether `begin_drag` was called, and `end_drag` not yet."""
+        return self._drags > 0
+
+    def holds(self, path: Path) -> bool:
+        """Tell whether a session file says the very state, camera included.
+
+        Parameters
+        ----------
+        path : Path
+            A session file.
+
+        Returns
+        -------
+        bool
+            False, too, if it cannot be read any more.
+        """
+        try:
+            return _placed(state.read(path)) == _placed(self._session)
+        except state.SessionError:
+            return False
+
+    def rest(self) -> None:
+        """Take the state as it is for one that needs no saving: nothing of it was made here."""
+        self._saved = self._session
+        self.history_changed.emit()
+
     def begin_drag(self) -> None:
         """Make all changes of one label one step, however long they take, until `end_drag`."""
         self._drags += 1
@@ -197,6 +226,11 @@ class Document:
         before, self._session = self._session, session
         self.changed.emit(session, before)
         self.history_changed.emit()
+
+
+def _placed(session: Session) -> Session:
+    sample = session.mesh.startswith(PREFIX)
+    return session if sample else replace(session, mesh=str(Path(session.mesh).resolve()))
 
 
 def _without_camera(session: Session) -> Session:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtWidgets import QComboBox, QFormLayout, QPushButton, QSpinBox, QWidget
+from qtpy.QtWidgets import QComboBox, QFormLayout, QPushButton, QWidget
 
-from app.gui.slider import Slider
+from app.gui.slider import Slider, Whole
 from lutcore.parameters import Choice, Number, Parameters, declared
 
 Values = dict[str, float | str]
@@ -110,11 +110,10 @@ class ParameterForm(QWidget):
         box.currentTextChanged.connect(lambda text: self._on_changed(name, text))
         return box
 
-    def _whole(self, name: str, spec: Number) -> QSpinBox:
-        box = QSpinBox(self)
+    def _whole(self, name: str, spec: Number) -> Whole:
+        box = Whole(self)
         box.setRange(max(int(spec.low), -_MOST_WHOLE), min(int(spec.high), _MOST_WHOLE))
         box.setSuffix(_suffix(spec))
-        box.setKeyboardTracking(False)
         box.valueChanged.connect(lambda value: self._on_changed(name, float(value)))
         return box
 
@@ -166,6 +165,6 @@ def _show(control: QWidget, value: float | str) -> None:
     control.blockSignals(True)
     if isinstance(control, QComboBox):
         control.setCurrentIndex(control.findText(str(value), Qt.MatchFlag.MatchExactly))
-    elif isinstance(control, QSpinBox):
+    elif isinstance(control, Whole):
         control.setValue(int(value))
     control.blockSignals(False)

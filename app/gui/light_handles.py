@@ -103,7 +103,8 @@ class Handles:
             return
         for drawn in self._canvas.renderers():
             content = drawn.panel.content
-            if not isinstance(content, Surface) or content.rgb is None:
+            # Colours of a scale may be rgb too, where they fade.
+            if not isinstance(content, Surface) or content.rgb is None or content.scale:
                 continue  # nothing is lit there
             for index, light in enumerate(self._lights.all):
                 for actor in self._of(light, camera, index == self._lights.index):

@@ -107,7 +107,7 @@ class Lights:
         """Take the chosen light away."""
         if self.light is not None:
             kept = (*self.all[: self.index], *self.all[self.index + 1 :])
-            self._controller.change("remove light", lights=kept)
+            self._step("remove light", kept)
             self.chosen.emit(self.index)
 
     def make(self, kind: str) -> None:
@@ -158,9 +158,17 @@ class Lights:
             self.aim(turned(seen_by(self.light, self.camera), right, up))
 
     def _insert(self, label: str, light: AnyLight) -> None:
-        if self._controller.change(label, lights=(*self.all, light)):
+        if self._step(label, (*self.all, light)):
             self._index = len(self.all) - 1
             self.chosen.emit(self._index)
+
+    def _step(self, label: str, lights: tuple[AnyLight, ...]) -> bool:
+        """Do what is a step of its own, however fast it follows another of its kind."""
+        document = self._controller.document
+        document.begin_drag()
+        done = self._controller.change(label, lights=lights)
+        document.end_drag()
+        return done
 
     def _put(self, label: str, index: int, light: AnyLight) -> None:
         lights = (*self.all[:index], light, *self.all[index + 1 :])

@@ -36,6 +36,7 @@ def run(argument: str | None) -> int:
     application.setApplicationName("Curvelight")
     window = Window()
     window.show()
+    window.offer_recovery()
     # Asked for once the window is there, so that a broken file is told in it.
     if argument is None:
         window.start()

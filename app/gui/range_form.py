@@ -31,6 +31,7 @@ class RangeForm(QWidget):
         super().__init__()
         self._controller = controller
         self._found: Distribution | None = None
+        self._offered: list[tuple[float, float]] = []
         self.bar = ColorBar(self)
         self.low, self.high = (self._number(name) for name in ("Low end", "High end"))
         self.pointed = QLabel(_NOTHING, self)
@@ -100,7 +101,8 @@ class RangeForm(QWidget):
 
     def _follow_percentiles(self, given: tuple[float, float]) -> None:
         offered = list(dict.fromkeys((*PERCENTILES, given)))
-        if self.percentiles.count() != len(offered):
+        if offered != self._offered:
+            self._offered = offered
             self.percentiles.clear()
             for low, high in offered:
                 self.percentiles.addItem(f"{low:g} to {high:g} %", (low, high))

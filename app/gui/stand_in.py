@@ -8,6 +8,7 @@ from app.gui.coarse import Coarse
 from app.render import Drawn
 from app.scene import ColorScale, Surface, actor_of, recolor, shape_of
 from app.session import Vector
+from lutcore.arrays import AnyArray
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor
@@ -39,28 +40,31 @@ class StandIn:
             return
         shape = shape_of(found.mesh, origin)
         for one in drawn:
-            actor = None
-            if isinstance(one.panel.content, Surface) and one.actor is not None:
-                actor = actor_of(_part(one.panel.content, found), shape)
+            actor, content = None, one.panel.content
+            # It may have come before the picture of its mesh, while another is still shown.
+            own = content if isinstance(content, Surface) and content.mesh is found.fine else None
+            if own is not None and one.actor is not None:
+                actor = actor_of(_part(own, found), shape)
                 actor.SetProperty(one.actor.GetProperty())
                 actor.SetVisibility(False)
                 one.renderer.AddActor(actor)
             self._actors.append(actor)
 
-    def actor(self, index: int) -> "vtkActor | None":
+    def of(self, index: int) -> "tuple[vtkActor, AnyArray] | None":
         """Return the coarse mesh of a panel.
 
         Parameters
         ----------
         index : int
-            Of the panel.
+            Which one, as in `fill`.
 
         Returns
         -------
-        vtkActor or None
-            None where there is none.
+        (vtkActor, ndarray of int) or None
+            It, and which of the fine mesh's vertices it has.
         """
-        return self._actors[index] if index < len(self._actors) else None
+        actor = self._actors[index] if self._actors else None
+        return None if actor is None or self.coarse is None else (actor, self.coarse.vertices)
 
     def recolor(self, contents: Sequence[Surface | ColorScale]) -> None:
         """Follow the colours of the fine meshes.

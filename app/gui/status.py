@@ -1,5 +1,7 @@
 """What draws the view and how fast, at the end of the status bar."""
 
+from collections.abc import Callable
+
 from qtpy.QtWidgets import QLabel
 
 from app.gui.canvas import Canvas
@@ -14,10 +16,13 @@ class Status(QLabel):
     ----------
     canvas : Canvas
         The view.
+    reason : callable
+        Says why colours come from the vertices, if they do.
     """
 
-    def __init__(self, canvas: Canvas) -> None:
+    def __init__(self, canvas: Canvas, reason: Callable[[], str]) -> None:
         super().__init__(canvas)
+        self._reason = reason
         self._canvas = canvas
         self._seconds = 0.0
         self.setAccessibleName("What draws, and the time of a frame")
@@ -30,5 +35,6 @@ class Status(QLabel):
         first = self._seconds == 0.0
         self._seconds = seconds if first else (1.0 - _SHARE) * self._seconds + _SHARE * seconds
         name = backend.renderer.partition(" (")[0]
-        self.setText(f"per vertex, {name}, {1e3 * self._seconds:.0f} ms")
-        self.setToolTip(backend.label)
+        path = "per vertex" if self._canvas.by_pixel is None else "per pixel"
+        self.setText(f"{path}, {name}, {1e3 * self._seconds:.0f} ms")
+        self.setToolTip("\n".join(filter(None, (backend.label, self._reason()))))

@@ -131,8 +131,7 @@ class Swipe(QObject):
             return
         alone = _SHARES[self.shown]
         middle = column(drawn.box, self.at if alone is None else alone)
-        for actor in self._canvas.actors(drawn):
-            wipe_shader.place(actor, middle)
+        wipe_shader.place_all(drawn.renderer, middle)
         if self._divider is not None:
             self._divider.place(drawn.box, self.at, alone is None)
 

@@ -1,9 +1,10 @@
 """The main window: a view, docks around it, menus above, and what goes on below."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
-from qtpy.QtCore import QObject, Qt, Signal
+from qtpy.QtCore import QObject, Qt, QTimer, Signal
 from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
@@ -13,20 +14,25 @@ from app.gui.banner import Banner
 from app.gui.canvas import Canvas
 from app.gui.coarse import Coarse, coarse
 from app.gui.comparing import Comparing
-from app.gui.controller import Controller, Outcome
+from app.gui.controller import SESSION_SUFFIX, Controller, Outcome
 from app.gui.light_tool import LightTool
 from app.gui.lights import Lights
+from app.gui.pixel_path import PixelPath
 from app.gui.progress_bar import ProgressBar
+from app.gui.recovery import Lost, Recovery, lost
 from app.gui.settings import Settings
 from app.gui.status import Status
 from app.gui.unit_bar import UnitBar
 from app.gui.units import Units
+from app.gui.unsaved import Answer, ask, may_leave
+from app.gui.vision import Vision
 from app.picture import Composition
 from app.pipeline import Subject
 from app.session import Camera, Session
 
 # About as many triangles as a software renderer turns smoothly.
 _COARSE = 30_000
+_KEEP = 1000  # ms after a change, until it is kept for the case of a crash
 
 
 class Poster(QObject):
@@ -66,6 +72,8 @@ class Window(QMainWindow):
     def __init__(self, session: Session | None = None, settings: Settings | None = None) -> None:
         super().__init__()
         self.settings = settings or Settings()
+        self.ask_unsaved: Callable[[Window], Answer] = ask
+        """Asks a person about unsaved changes."""
         self._poster = Poster()
         self.controller = Controller(self._poster.post, session)
         self.setAcceptDrops(True)
@@ -80,6 +88,7 @@ class Window(QMainWindow):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.banner)
+        self.vision = Vision(self.controller)
         self.units = Units(self.controller, self.settings)
         self.unit_bar = UnitBar(middle, self.units)
         column.addWidget(self.unit_bar)
@@ -87,8 +96,9 @@ class Window(QMainWindow):
         self.setCentralWidget(middle)
         self.progress = ProgressBar(self, self.controller.worker.cancel)
         self.statusBar().addPermanentWidget(self.progress)
-        self.statusBar().addPermanentWidget(Status(self.canvas))
         self._connect()
+        self.pixel_path = PixelPath(self.controller, self.canvas, self.settings)
+        self.statusBar().addPermanentWidget(Status(self.canvas, lambda: self.pixel_path.reason))
         self.comparing = Comparing(self.controller, self.canvas)
         self.docks = docks.add_all(self)
         self.actions_ = Actions()
@@ -101,10 +111,32 @@ class Window(QMainWindow):
         """Ask for the first picture."""
         self.controller.refresh()
 
+    def offer_recovery(self) -> None:
+        """Offer the newest session that a crash left behind, if there is one."""
+        for one in lost(self.settings.path.parent)[:1]:
+            self.banner.offer(
+                f"{one.session.mesh}: the last window of it was not closed, and had changes that "
+                "no file holds",
+                "Restore",
+                partial(self._restore, one),
+            )
+
+    def _restore(self, one: Lost) -> None:
+        self.controller.document.put("restore", one.session)
+        self.recovery.keep()
+        one.path.unlink(missing_ok=True)
+
     def _connect(self) -> None:
+        self.recovery = Recovery(self.controller.document, self.settings.path.parent)
+        self._keeping = QTimer(self)
+        self._keeping.setSingleShot(True)
+        self._keeping.setInterval(_KEEP)
+        self._keeping.timeout.connect(self.recovery.keep)
+        self.controller.document.history_changed.connect(self._keep_soon)
         controller = self.controller
         controller.previewed.connect(self._on_previewed)
         controller.shown.connect(self._on_shown)
+        self.vision.changed.connect(self._on_vision)
         controller.loaded.connect(self._on_loaded)
         controller.failed.connect(self.banner.warn)
         controller.noted.connect(lambda text: self.statusBar().showMessage(text, 8000))
@@ -113,6 +145,9 @@ class Window(QMainWindow):
         controller.document.history_changed.connect(self._retitle)
         self.canvas.moved.connect(controller.look)
         self.canvas.resized.connect(controller.resize)
+
+    def _keep_soon(self) -> None:
+        self._keeping.start()
 
     def _on_changed(self, session: Session, before: Session) -> None:
         if isinstance(session.camera, Camera) and session.camera != self.canvas.camera:
@@ -129,7 +164,11 @@ class Window(QMainWindow):
         newest = self.controller.session.camera
         made = outcome.composition
         camera = newest if isinstance(newest, Camera) else made.camera
-        self.canvas.show_composition(made, camera)
+        self.canvas.show_composition(self.vision.seen(made), camera)
+
+    def _on_vision(self) -> None:
+        if self.controller.outcome is not None:
+            self._on_shown(self.controller.outcome)
 
     def _on_loaded(self, subject: Subject) -> None:
         self.banner.hide()
@@ -208,12 +247,17 @@ class Window(QMainWindow):
     def dropEvent(self, event: Any) -> None:  # noqa: N802
         """Open the first file that was dropped."""
         files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
-        if files:
+        session = bool(files) and files[0].lower().endswith(SESSION_SUFFIX)
+        if files and (not session or may_leave(self)):
             self.controller.open(files[0])
             event.acceptProposedAction()
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """End what runs."""
+        """End what runs; a person is asked before what is unsaved goes."""
+        if event.spontaneous() and not may_leave(self):
+            event.ignore()
+            return
+        self.recovery.forget()
         self.controller.close()
         self.canvas.Finalize()
         super().closeEvent(event)

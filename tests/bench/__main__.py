@@ -20,6 +20,9 @@ SCRIPTS = (
     "loading_speed",
     "pictures",
     "batch",
+    "verify",
+    "window",
+    "monkey",
 )
 
 

@@ -6,6 +6,7 @@ first 500 actions.
 """
 
 import argparse
+import faulthandler
 import os
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from pathlib import Path
 from tests.screen import start_screen
 
 _SETTLED = 500
+_HUNG = 3600.0
 
 
 def main() -> None:
@@ -52,7 +54,10 @@ def _run(given: argparse.Namespace, meshes: list[str]) -> None:
     window.start()
     while window.controller.outcome is None:
         QTest.qWait(10)
+    # Where it hangs, if it hangs.
+    faulthandler.dump_traceback_later(_HUNG, exit=True)
     found = Monkey(window, meshes, given.seed).act(given.actions)
+    faulthandler.cancel_dump_traceback_later()
     window.close()
     application.processEvents()
     print(f"actions                                  {len(found.done)}")

@@ -2,7 +2,7 @@ import colour
 import numpy as np
 import pytest
 
-from lutcore.color import auto_exposure, srgb_bytes, srgb_decode
+from lutcore.color import _steps, auto_exposure, product_bytes, srgb_bytes, srgb_decode
 from lutcore.metrics import ciede2000, ciede2000_lab
 
 
@@ -53,3 +53,21 @@ def test_the_difference_of_bytes_is_that_of_the_colours_they_show():
     black, white = np.zeros((1, 3), np.uint8), np.full((1, 3), 255, np.uint8)
     assert abs(ciede2000(black, white)[0] - 100.0) < 0.01
     assert ciede2000(white, white)[0] == 0.0
+
+
+def test_bytes_of_a_product_are_those_of_its_values():
+    random = np.random.default_rng(0)
+    light = random.uniform(0.0, 1.2, (20_000, 3)) ** 3
+    for factor in (random.uniform(size=(20_000, 1)), random.uniform(size=(20_000, 3))):
+        for exposure in (1.0, 2.37):
+            np.testing.assert_array_equal(
+                product_bytes(light, factor, exposure), srgb_bytes(light * factor, exposure)
+            )
+
+
+def test_bytes_of_a_product_step_at_the_same_doubles():
+    steps = _steps()[0][1:256]
+    one = np.ones((85, 1))
+    for values in (steps, np.nextafter(steps, 0.0), np.nextafter(steps, 2.0)):
+        table = values.reshape(-1, 3)
+        np.testing.assert_array_equal(product_bytes(table, one, 1.0), srgb_bytes(table, 1.0))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 TITLE, AREA, ORDER, SHOWN = "Choose", "bottom", 2, False
 _TIME = "time for this mesh and its lights, ms"
-_ERROR = "predicted error, R_d: 99th perc., median"
+_ERROR = "predicted error, R_d"
 _STEPS = 100
 _REST = 300  # ms without a change before the ladder is asked again
 
@@ -66,7 +66,7 @@ class ChoosePanel(QWidget):
         self.chart = Scatter(
             self,
             "time for this mesh and its lights, ms",
-            "predicted error, R_d: median to 99th percentile",
+            "predicted error, R_d",
         )
         self.chart.setAccessibleName("Speed against accuracy; click a point to use that model")
         self.chart.picked.connect(self._on_picked)

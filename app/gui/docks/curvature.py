@@ -51,6 +51,7 @@ class CurvaturePanel(QWidget):
         self._controller = controller = window.controller
         self._found: Distribution | None = None
         self._measured: tuple[object, ...] = ()
+        self._colormaps: list[str] = []
         self.quantity = QComboBox(self)
         self.quantity.setAccessibleName("Quantity")
         self.quantity.setToolTip("What the colours tell")
@@ -131,7 +132,8 @@ class CurvaturePanel(QWidget):
 
     def _follow_colormap(self, name: str) -> None:
         names = list(dict.fromkeys((*COLORMAPS, name)))
-        if self.colormap.count() != len(names):
+        if names != self._colormaps:
+            self._colormaps = names
             self.colormap.clear()
             for one in names:
                 self.colormap.addItem(COLORMAPS.get(one, one), one)

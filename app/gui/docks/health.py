@@ -10,13 +10,12 @@ from qtpy.QtWidgets import (
     QLabel,
     QListWidget,
     QPushButton,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
 
 from app.gui.repairing import Repairing
-from app.gui.slider import Number
+from app.gui.slider import Number, Whole
 from app.repairs import KINDS
 from lutcore.health import MeshHealth
 from lutcore.parameters import Number as Accepted
@@ -67,7 +66,7 @@ class HealthPanel(QWidget):
             label.setTextFormat(Qt.TextFormat.PlainText)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.buttons: dict[str, QPushButton] = {}
-        self.numbers: dict[str, Number | QSpinBox] = {}
+        self.numbers: dict[str, Number | Whole] = {}
         self.done = QListWidget(self)
         self.done.setAccessibleName("Repairs that were done, in order")
         self.done.setToolTip("Repairs that were done, in order; they are part of the session")
@@ -107,14 +106,12 @@ class HealthPanel(QWidget):
         whole.addWidget(self.done, 1)
         whole.addLayout(row_of_two)
 
-    def _number(self, value: Accepted, default: float) -> Number | QSpinBox:
-        number: Number | QSpinBox
+    def _number(self, value: Accepted, default: float) -> Number | Whole:
+        number: Number | Whole
         if value.integer:
-            number = QSpinBox(self)
+            number = Whole(self)
             number.setRange(int(value.low), int(value.high))
             number.setValue(int(default))
-            number.setGroupSeparatorShown(True)
-            number.setStepType(QSpinBox.StepType.AdaptiveDecimalStepType)
         else:
             number = Number(self)
             number.setRange(value.low, value.high)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, get_args
 from app.colormaps import PAPER
 from app.gui.actions import Action
 from app.gui.showing import COLORMAPS, PERCENTILES, SWITCHES, show_quantity
+from app.gui.vision import KINDS
 from app.quantities import QUANTITIES
 from app.session import Quantity, Session
 
@@ -34,6 +35,7 @@ def actions(window: "Window") -> list[Action]:
         *(_quantity(controller, name) for name in get_args(Quantity)),
         *(_colormap(controller, name, text) for name, text in COLORMAPS.items()),
         *(_switch(controller, name, *words) for name, words in SWITCHES.items()),
+        *(_vision(window, kind) for kind in ("", *KINDS)),
         *(_percentiles(controller, ends) for ends in PERCENTILES),
         Action(
             "curvature.automatic_range",
@@ -85,6 +87,17 @@ def _switch(controller: "Controller", name: str, text: str, doc: str) -> Action:
         doc,
         turn,
         checked=partial(_is, controller, name, True),
+    )
+
+
+def _vision(window: "Window", kind: str) -> Action:
+    return Action(
+        f"curvature.seen_with_{kind or 'all_cones'}",
+        "Curvature/Seen with",
+        _capital(kind) if kind else "All cones",
+        f"Preview the colour map as seen with {kind}" if kind else "Show the colours as they are",
+        partial(window.vision.choose, kind),
+        checked=lambda: window.vision.kind == kind,
     )
 
 

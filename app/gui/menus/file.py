@@ -1,4 +1,4 @@
-"""File: open, and what lies beside."""
+"""File: open, save, and what lies beside."""
 
 from functools import partial
 from pathlib import Path
@@ -6,8 +6,12 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtWidgets import QFileDialog
 
+from app.gui import outputs
 from app.gui.actions import Action
+from app.gui.controller import SESSION_SUFFIX
 from app.gui.neighbours import neighbour
+from app.gui.session_file import save, save_as
+from app.gui.unsaved import may_leave
 
 if TYPE_CHECKING:
     from app.gui.window import Window
@@ -39,6 +43,23 @@ def actions(window: "Window") -> list[Action]:
             "Ctrl+O",
         ),
         Action(
+            "file.save",
+            "File",
+            "Save session\N{HORIZONTAL ELLIPSIS}",
+            "Save the session; the command line draws the same picture of it",
+            partial(_save, window),
+            "Ctrl+S",
+        ),
+        Action(
+            "file.save_as",
+            "File",
+            "Save session as\N{HORIZONTAL ELLIPSIS}",
+            "Save the session as another file",
+            partial(_save_as, window),
+            "Ctrl+Shift+S",
+        ),
+        *outputs.actions(window),
+        Action(
             "file.next",
             "File",
             "Next in folder",
@@ -62,8 +83,18 @@ def _open(window: "Window") -> None:
     mesh = window.controller.session.mesh
     start = "" if mesh.startswith("sample:") else str(Path(mesh).parent)
     name, _ = QFileDialog.getOpenFileName(window, "Open", start, _FILTER)
-    if name:
+    # A mesh is a step that can be undone; a session takes the place of all that was done.
+    session = name.lower().endswith(SESSION_SUFFIX)
+    if name and (not session or may_leave(window)):
         window.controller.open(name)
+
+
+def _save(window: "Window") -> None:
+    save(window)
+
+
+def _save_as(window: "Window") -> None:
+    save_as(window)
 
 
 def _beside(window: "Window", step: int) -> None:
@@ -75,4 +106,5 @@ def _beside(window: "Window", step: int) -> None:
 
 
 def _quit(window: "Window") -> None:
-    window.close()
+    if may_leave(window):
+        window.close()

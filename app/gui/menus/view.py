@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from app.camera import VIEWS
 from app.gui import orbit
 from app.gui.actions import Action
+from app.gui.pixel_path import CHOICES
 from app.session import View
 
 if TYPE_CHECKING:
@@ -84,6 +85,22 @@ def actions(window: "Window") -> list[Action]:
             checked=partial(_is_parallel, window),
         ),
         *cameras,
+        *_paths(window),
+    ]
+
+
+def _paths(window: "Window") -> list[Action]:
+    path = window.pixel_path
+    return [
+        Action(
+            f"view.shade_{choice}",
+            "View/Compute shading",
+            text,
+            doc,
+            partial(path.choose, choice),
+            checked=lambda choice=choice: path.choice == choice,  # type: ignore[misc]
+        )
+        for choice, (text, doc) in CHOICES.items()
     ]
 
 

@@ -70,8 +70,8 @@ def settled(qtbot, window, timeout: int = 240_000) -> None:
 
 def pixels(window):
     """What the view shows, (height, width, 3) uint8, the first row at the top."""
-    from app.render import _grab
+    from app.render import grab
 
     canvas = window.canvas
     canvas.window_.Render()
-    return _grab(canvas.window_, tuple(canvas.window_.GetSize()))
+    return grab(canvas.window_, tuple(canvas.window_.GetSize()))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import psutil
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QAbstractButton,
@@ -70,6 +70,10 @@ class Monkey:
         self.random = np.random.default_rng(seed)
         self.found = Findings()
         self._process = psutil.Process()
+        # A menu under a button waits for an answer: a monkey gives none.
+        self._closing = QTimer(window)
+        self._closing.timeout.connect(_close_popup)
+        self._closing.start(50)
         self._ways = {
             "action": (30, self._action),
             "drag": (20, self._drag),
@@ -178,6 +182,12 @@ class Monkey:
     def _key(self) -> None:
         key = _KEYS[self.random.integers(len(_KEYS))]
         QTest.keyClick(self.window, key)
+
+
+def _close_popup() -> None:
+    for waiting in (QApplication.activePopupWidget(), QApplication.activeModalWidget()):
+        if waiting is not None:
+            waiting.close()
 
 
 def without_dialogs(patch) -> None:

@@ -10,6 +10,7 @@ from app.gui.distribution import Distribution, distribution
 from app.pipeline import Pipeline
 from app.quantities import QUANTITIES
 from app.session import Method, Session
+from app.shown import trusted
 from lutcore.statistics import histogram
 
 
@@ -104,14 +105,16 @@ def test_the_distribution_counts_what_is_shown() -> None:
     session = Session(
         mesh="sample:torus",
         view="curvature",
-        quantity="k1",
+        quantity="mean",
         estimator=Method("rusinkiewicz2004"),
         range=(0.0, 1.0),
     )
     pipeline = Pipeline()
     found = distribution(session, pipeline)
-    k1 = pipeline.curvatures(session).k1
-    assert (found.low, found.high) == pytest.approx(np.percentile(k1, (5, 95)))
+    curvatures = pipeline.curvatures(session)
+    mean = curvatures.mean
+    ends = np.percentile(mean[trusted(curvatures)], (5.0, 95.0))
+    assert (found.low, found.high) == pytest.approx(tuple(ends))
     counted = found.histogram
-    assert counted.counts.sum() + counted.below + counted.above == len(k1)
-    assert found.share_below(float(np.median(k1))) == pytest.approx(50.0, abs=0.3)
+    assert counted.counts.sum() + counted.below + counted.above == len(mean)
+    assert found.share_below(float(np.median(mean))) == pytest.approx(50.0, abs=0.3)

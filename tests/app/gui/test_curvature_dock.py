@@ -39,6 +39,11 @@ def _choose(qtbot, box, text: str) -> None:
         qtbot.keyClick(box, step)
 
 
+def _tick(qtbot, box) -> None:
+    """Click a check box where its square is: beyond its words it is no part of it."""
+    qtbot.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(8, box.height() // 2))
+
+
 def test_a_quantity_is_chosen_and_undone(window, panel, qtbot) -> None:
     before = pixels(window)
     _choose(qtbot, panel.quantity, "Gauss")
@@ -106,7 +111,7 @@ def test_the_ends_are_typed(window, panel, qtbot) -> None:
 
 def test_a_symmetric_range_moves_both_ends(window, panel, qtbot) -> None:
     _choose(qtbot, panel.quantity, "mean")
-    qtbot.mouseClick(panel.switches["symmetric"], Qt.MouseButton.LeftButton)
+    _tick(qtbot, panel.switches["symmetric"])
     settled(qtbot, window)
     low, high = panel.range.bar.ends
     assert low == -high
@@ -131,7 +136,7 @@ def test_a_locked_range_stays_for_another_mesh(window, panel, qtbot) -> None:
     assert window.controller.session.range is None
     window.controller.document.undo()
     settled(qtbot, window)
-    qtbot.mouseClick(panel.range.lock, Qt.MouseButton.LeftButton)
+    _tick(qtbot, panel.range.lock)
     settled(qtbot, window)
     window.controller.open("sample:sphere")
     settled(qtbot, window)
@@ -146,7 +151,7 @@ def test_a_locked_range_stays_for_another_mesh(window, panel, qtbot) -> None:
 def test_switches_menu_and_session_agree(window, panel, qtbot) -> None:
     for name, switch in panel.switches.items():
         before = pixels(window)
-        qtbot.mouseClick(switch, Qt.MouseButton.LeftButton, pos=QPoint(10, switch.height() // 2))
+        _tick(qtbot, switch)
         settled(qtbot, window)
         assert getattr(window.controller.session, name)
         assert window.qactions[f"curvature.{name}"].isChecked()
@@ -170,7 +175,7 @@ def test_estimator_parameters_and_scale(window, panel, qtbot) -> None:
     assert window.controller.session.estimator == Method("auto")
     window.controller.change("unit", mm_per_unit=10.0)
     settled(qtbot, window)
-    qtbot.mouseClick(panel.scale.auto, Qt.MouseButton.LeftButton, pos=QPoint(8, 8))
+    _tick(qtbot, panel.scale.auto)
     panel.scale.slider.number.setValue(8.0)
     settled(qtbot, window)
     # Shown in millimetres, kept in mesh units.
@@ -183,6 +188,10 @@ def test_colour_maps_follow_the_session(window, panel, qtbot) -> None:
     assert window.controller.session.colormap == "cividis"
     window.controller.change("colour map", colormap="Spectral")
     assert panel.colormap.currentText() == "Spectral"
+    window.controller.change("another", colormap="twilight", percentiles=(2.0, 98.0))
+    assert panel.colormap.currentText() == "twilight"
+    window.controller.change("more", percentiles=(3.0, 97.0))
+    assert panel.range.percentiles.currentText() == "3 to 97 %"
     _choose(qtbot, panel.colormap, "green to red")
     assert window.controller.session.colormap is None
 

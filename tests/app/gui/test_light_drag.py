@@ -21,7 +21,6 @@ def view(qtbot, window):
     content = window.docks["lights"].fill()
     settled(qtbot, window)
     qtbot.waitUntil(content.isVisible)
-    window.docks["lights"].setVisible(True)
     return window
 
 
@@ -114,7 +113,7 @@ def test_a_point_light_is_moved_across_the_view(qtbot, view):
 
 def test_handles_are_seen_only_with_the_dock_and_never_saved(qtbot, view):
     shown = pixels(view)
-    view.docks["shading"].raise_()
+    view.docks["lights"].setVisible(False)
     qtbot.waitUntil(lambda: not view.light_tool.handles.shown)
     bare = pixels(view)
     at = handle(view, 0)
@@ -126,8 +125,9 @@ def test_handles_are_seen_only_with_the_dock_and_never_saved(qtbot, view):
     height, width = bare.shape[:2]
     made = outcome.composition
     saved = draw(made.panels, (width, height), outcome.session.background, made.rows).image
-    # At the handle there is nothing but background.
-    assert (saved[patch] == saved[0, 0]).all()
+    # Rounding of a colour between vertices may differ with multisampling.
+    assert np.abs(saved[patch].astype(int) - bare[patch]).max() <= 2
+    assert np.abs(saved[patch].astype(int) - shown[patch]).max() > 50
 
 
 def test_the_chosen_light_survives_that_others_go(window):

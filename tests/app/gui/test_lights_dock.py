@@ -70,15 +70,15 @@ def test_another_kind_is_as_bright_from_the_same_side(qtbot, window, panel):
     camera = window.canvas.camera
     first = window.controller.session.lights[0]
     world = kept_in(Directional(first.direction), first.direction, camera)
-    panel.kind.setCurrentIndex(panel.kind.findData("cone"))
-    panel.kind.activated.emit(panel.kind.currentIndex())
+    panel.form.kind.setCurrentIndex(panel.form.kind.findData("cone"))
+    panel.form.kind.activated.emit(panel.form.kind.currentIndex())
     cone = window.controller.session.lights[0]
     assert isinstance(cone, Cone)
     back = np.subtract(cone.position, camera.target)
     away = np.linalg.norm(back)
     np.testing.assert_allclose(back / away, world / np.linalg.norm(world), atol=1e-9)
     np.testing.assert_allclose(np.divide(cone.intensity, away**2), first.irradiance, rtol=1e-9)
-    assert panel.angle.isVisible() and not panel.frame.isVisible()
+    assert panel.form.angle.isVisible() and not panel.form.frame.isVisible()
     settled(qtbot, window)
 
 
@@ -110,9 +110,9 @@ def test_arrow_keys_turn_the_chosen_light(window, panel):
 
 
 def test_colour_and_strength_are_apart(window, panel):
-    panel.paint(QColor(255, 0, 0))
+    panel.form.paint(QColor(255, 0, 0))
     assert window.controller.session.lights[0].irradiance == (1.0, 0.0, 0.0)
-    panel.strength.number.setValue(2.0)
+    panel.form.strength.number.setValue(2.0)
     assert window.controller.session.lights[0].irradiance == (2.0, 0.0, 0.0)
 
 
@@ -120,8 +120,8 @@ def test_a_light_fixed_in_the_world_comes_from_where_it_came(qtbot, window, pane
     before = window.controller.session.lights[0]
     seen = np.asarray(before.direction) / np.linalg.norm(before.direction)
     rgb = window.controller.outcome.composition.panels[0].content.rgb
-    panel.frame.setCurrentIndex(panel.frame.findData("world"))
-    panel.frame.activated.emit(panel.frame.currentIndex())
+    panel.form.frame.setCurrentIndex(panel.form.frame.findData("world"))
+    panel.form.frame.activated.emit(panel.form.frame.currentIndex())
     settled(qtbot, window)
     light = window.controller.session.lights[0]
     assert light.frame == "world"
@@ -136,5 +136,5 @@ def test_no_direction_is_refused_with_a_word(window, panel):
     before = window.controller.session.lights[0]
     said = []
     window.controller.failed.connect(said.append)
-    panel.direction.changed.emit((0.0, 0.0, 0.0))
+    panel.form.direction.changed.emit((0.0, 0.0, 0.0))
     assert window.controller.session.lights[0] == before and "direction" in said[0]

@@ -35,9 +35,12 @@ def _at(window, x, share_of_height=0.25):
     return QPoint(round(x / scale), round(share_of_height * window.canvas.height()))
 
 
-@pytest.mark.parametrize("kind", PAIRS)
-def test_left_is_the_first_and_right_the_second(open_window, qtbot, kind) -> None:
-    window = open_window(_session(kind))
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [*((kind, {}) for kind in PAIRS), ("estimator", {"strokes": True, "fade": True})],
+)
+def test_left_is_the_first_and_right_the_second(open_window, qtbot, kind, fields) -> None:
+    window = open_window(_session(kind, **fields))
     swipe = window.comparing.swipe
     rows, left, width = _surface_rows(window)
     seen = {}
@@ -65,7 +68,7 @@ def _plain(window, surface: Surface):
     from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     from app import gl
-    from app.render import _grab, fill
+    from app.render import fill, grab
 
     made = window.controller.outcome.composition
     size = tuple(window.canvas.window_.GetSize())
@@ -77,7 +80,7 @@ def _plain(window, surface: Surface):
     other.SetSize(*size)
     fill(other, panels, size, made.session.background, made.rows, window.canvas.origin)
     other.Render()
-    image = _grab(other, size).astype(int)
+    image = grab(other, size).astype(int)
     other.Finalize()
     return image
 

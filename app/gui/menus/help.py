@@ -1,0 +1,123 @@
+"""Help: what the keys do, everything by name, and what this program is."""
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from qtpy.QtGui import QKeySequence
+from qtpy.QtWidgets import QDialog, QLabel, QMessageBox, QScrollArea, QVBoxLayout
+
+from app.gui.actions import MENUS, Action
+
+if TYPE_CHECKING:
+    from app.gui.window import Window
+
+ORDER = 10
+
+
+def actions(window: "Window") -> list[Action]:
+    """Return the actions of this menu.
+
+    Parameters
+    ----------
+    window : Window
+        What they act on.
+
+    Returns
+    -------
+    list of Action
+        In the order of the menu.
+    """
+    return [
+        Action(
+            "help.palette",
+            "Help",
+            "Command palette\N{HORIZONTAL ELLIPSIS}",
+            "Do anything by typing a few letters of its name",
+            partial(_palette, window),
+            "Ctrl+Shift+P",
+        ),
+        Action(
+            "help.keys",
+            "Help",
+            "Keys\N{HORIZONTAL ELLIPSIS}",
+            "Show what every key and mouse button does",
+            partial(_keys, window),
+            "H",
+        ),
+        Action(
+            "help.about",
+            "Help",
+            "About\N{HORIZONTAL ELLIPSIS}",
+            "Show the version, and what draws",
+            partial(_about, window),
+        ),
+    ]
+
+
+def _palette(window: "Window") -> None:
+    from app.gui.palette import Palette
+
+    palette = Palette(window)
+    palette.open()
+    palette.line.setFocus()
+
+
+def keys_text(window: "Window") -> str:
+    """Return the cheat sheet.
+
+    Parameters
+    ----------
+    window : Window
+        Its actions, with the keys that they have now.
+
+    Returns
+    -------
+    str
+        Rich text: a table for each menu.
+    """
+    parts = [
+        "<h3>Mouse</h3><table>",
+        "<tr><td><b>Left drag</b>&nbsp;&nbsp;</td>",
+        "<td>turn; with Ctrl roll, with Shift shift</td></tr>",
+        "<tr><td><b>Right drag</b></td><td>shift</td></tr>",
+        "<tr><td><b>Wheel</b></td><td>nearer, farther</td></tr>",
+        "<tr><td><b>L or Alt and drag</b></td><td>turn the chosen light</td></tr></table>",
+    ]
+    for menu in MENUS:
+        rows = []
+        for one in window.actions_:
+            keys = window.qactions[one.name].shortcut()
+            if one.menu.split("/")[0] == menu and not keys.isEmpty():
+                said = keys.toString(QKeySequence.SequenceFormat.NativeText)
+                rows.append(f"<tr><td><b>{said}</b>&nbsp;&nbsp;</td><td>{one.doc}</td></tr>")
+        if rows:
+            parts.append(f"<h3>{menu}</h3><table>{''.join(rows)}</table>")
+    return "".join(parts)
+
+
+def _keys(window: "Window") -> None:
+    sheet = QDialog(window)
+    sheet.setWindowTitle("Keys")
+    text = QLabel(keys_text(window), sheet)
+    text.setMargin(12)
+    scroll = QScrollArea(sheet)
+    scroll.setWidget(text)
+    scroll.setWidgetResizable(True)
+    column = QVBoxLayout(sheet)
+    column.addWidget(scroll)
+    sheet.resize(text.sizeHint().width() + 60, round(window.height() * 0.8))
+    sheet.open()
+
+
+def _about(window: "Window") -> None:
+    from app.record import versions
+
+    backend = window.canvas.backend
+    lines = [f"{name} {version}" for name, version in versions(window.controller.session).items()]
+    if backend is not None:
+        lines.append(backend.label)
+    box = QMessageBox(window)
+    box.setWindowTitle("About Curvelight")
+    box.setText("Curvelight: curvature of scanned surfaces, and translucent shading from it.")
+    box.setInformativeText("\n".join([*lines, "GPL-3.0-or-later"]))
+    box.open()

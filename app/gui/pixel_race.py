@@ -1,0 +1,140 @@
+"""Which is faster here: shading at vertices or at pixels, measured in the view itself."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from qtpy.QtCore import QObject, QTimer
+
+from app.camera import axes
+from app.gui.canvas import Canvas
+from app.leaving import leaving
+from app.picture import Composition
+from app.pipeline import Pipeline
+from app.shader.look import PixelLook
+
+# The first of each compiles, and sends the mesh; of the others the fastest counts.
+_FRAMES = 3
+
+
+@dataclass(frozen=True)
+class Contest:
+    """Seconds from a movement to its frame.
+
+    Parameters
+    ----------
+    computing : float
+        Of one light at all vertices.
+    vertex : float
+        To send colours, and draw.
+    pixel : float
+        To set uniforms, and draw.
+    """
+
+    computing: float
+    vertex: float
+    pixel: float
+
+    @property
+    def pixels_win(self) -> bool:
+        """Whether the shader is faster."""
+        return self.pixel < self.computing + self.vertex
+
+    @property
+    def label(self) -> str:
+        """The times in words."""
+        vertex, pixel = 1e3 * (self.computing + self.vertex), 1e3 * self.pixel
+        return f"at vertices {vertex:.0f} ms for each step of a light, at pixels {pixel:.0f} ms"
+
+
+def step_seconds(made: Composition, pipeline: Pipeline) -> float:
+    """Return the seconds in which the colours for one light that moved are computed.
+
+    Parameters
+    ----------
+    made : Composition
+        A shaded picture.
+    pipeline : Pipeline
+        Where its arrays came from.
+
+    Returns
+    -------
+    float
+        0 where there is no light.
+    """
+    from lutcore.color import product_bytes
+    from lutcore.shading import exitance
+
+    session, frame = made.session, axes(made.camera)
+    if not session.lights or made.exposure is None:
+        return 0.0
+    model = pipeline.settled(session, session.model, frame)
+    inputs = pipeline.inputs(session, frame)
+    alone = replace(inputs, lights=inputs.lights[:1])
+    factor = leaving(session, pipeline, made.camera)
+    seconds = []
+    for _ in range(_FRAMES):
+        start = time.perf_counter()
+        product_bytes(exitance(model, alone), factor, made.exposure)
+        seconds.append(time.perf_counter() - start)
+    return min(seconds)
+
+
+class PixelRace(QObject):
+    """Draws the view a few times in both ways, a frame for each turn of the event loop.
+
+    Parameters
+    ----------
+    canvas : Canvas
+        Shows the picture, at vertices; so it does when the race ends.
+    look : PixelLook
+        The same for pixels.
+    computing : float
+        See `Contest`.
+    move : callable
+        Sets the uniforms.
+    done : callable
+        Gets the `Contest`, unless the race was stopped.
+    """
+
+    def __init__(
+        self,
+        canvas: Canvas,
+        look: PixelLook,
+        computing: float,
+        move: Callable[[], None],
+        done: Callable[[Contest], None],
+    ) -> None:
+        super().__init__(canvas)
+        self._canvas, self._look, self._computing = canvas, look, computing
+        self._move, self._done = move, done
+        self._seconds: dict[bool, list[float]] = {False: [], True: []}
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._frame)
+        self._timer.start(0)
+
+    def stop(self) -> None:
+        """End it without a result."""
+        self._timer.stop()
+        self._canvas.shade_by_pixel(None)
+        self.deleteLater()
+
+    def _frame(self) -> None:
+        canvas = self._canvas
+        if canvas.coarsely or not canvas.isVisible():
+            return  # something moves: later
+        by_pixel = len(self._seconds[False]) == _FRAMES
+        if by_pixel and canvas.by_pixel is None:
+            canvas.shade_by_pixel(self._look)
+        start = time.perf_counter()
+        if by_pixel:
+            self._move()
+        else:
+            canvas.resend()
+        canvas.window_.Render()
+        canvas.window_.WaitForCompletion()
+        self._seconds[by_pixel].append(time.perf_counter() - start)
+        if len(self._seconds[True]) == _FRAMES:
+            self.stop()
+            vertex, pixel = (min(self._seconds[one][1:]) for one in (False, True))
+            self._done(Contest(self._computing, vertex, pixel))

@@ -1,0 +1,161 @@
+"""A pixel look on actors that are drawn: put on, moved by uniforms alone, taken off."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkRenderingCore import vtkActor, vtkShaderProperty, vtkTexture
+
+from app.camera import axes
+from app.session import Camera, Session, Vector
+from app.shader import glsl
+from app.shader.look import MOST_LIGHTS, PixelLook, SingleArray, packed
+from lutcore.lights import LIGHT_FIELDS
+
+if TYPE_CHECKING:
+    from lutcore.arrays import AnyArray
+
+_DECLARED, _DONE = "//VTK::Normal::Dec", "//VTK::Normal::Impl"
+_TEXTURES, _COLOR = "//VTK::TCoord::Dec", "//VTK::Light::Impl"
+_UNSHIFTED = 0  # vtkOpenGLVertexBufferObject::DISABLE_SHIFT_SCALE
+
+
+class PixelLight:
+    """Shades actors of one surface by the pixel while it is on them.
+
+    Parameters
+    ----------
+    look : PixelLook
+        The surface and the model.
+    actors : sequence of (vtkActor, ndarray of int or None)
+        Of `app.scene.actor_of`, unlit and in colours, and which of the surface's vertices each
+        has, None for all. They may share a shader property.
+    origin : tuple of 3 floats
+        What the geometry is drawn relative to.
+    """
+
+    def __init__(
+        self,
+        look: PixelLook,
+        actors: "Sequence[tuple[vtkActor, AnyArray | None]]",
+        origin: Vector,
+    ) -> None:
+        self.look = look
+        self._actors = list(actors)
+        self._origin = np.asarray(origin)
+        self._texture = None if look.table is None else _texture(look.table)
+        for actor, vertices in self._actors:
+            self._give(actor, vertices)
+        for style in self._styles():
+            _replace(style, look)
+        # All that the shader names must be there at the first frame, or it cannot be built.
+        dark = {glsl.LIGHTS: (0.0,) * (MOST_LIGHTS * LIGHT_FIELDS), glsl.EYE: (0.0, 0.0, 1.0, 0.0)}
+        for actor, _ in self._actors:
+            self._set(actor, look.numbers | dark)
+            self._count(actor, 0, 1.0)
+
+    def move(self, session: Session, camera: Camera, exposure: float) -> None:
+        """Follow lights, camera and exposure: uniforms, and nothing else.
+
+        Parameters
+        ----------
+        session : Session
+            Its lights are used, no more than there is room for.
+        camera : Camera
+            Where it is seen from.
+        exposure : float
+            Factor on linear light.
+        """
+        rows = packed(session, camera)
+        beamed = rows[:, 0] != 0.0
+        rows[beamed, 1:4] -= self._origin
+        parallel = camera.height is not None
+        eye = axes(camera)[2] if parallel else np.subtract(camera.position, self._origin)
+        numbers = {
+            glsl.LIGHTS: tuple(rows.ravel()),
+            glsl.EYE: (*eye, 0.0 if parallel else 1.0),
+        }
+        for actor, _ in self._actors:
+            self._set(actor, numbers)
+            self._count(actor, len(session.lights), exposure)
+
+    def remove(self) -> None:
+        """Leave the actors as they were, in the colours of their vertices."""
+        for style in self._styles():
+            style.ClearAllVertexShaderReplacements()
+            style.ClearAllFragmentShaderReplacements()
+            style.GetFragmentCustomUniforms().RemoveAllUniforms()
+        for actor, _ in self._actors:
+            mapper = actor.GetMapper()
+            mapper.RemoveAllVertexAttributeMappings()
+            mapper.ScalarVisibilityOn()
+            for name in self.look.attributes:
+                mapper.GetInput().GetPointData().RemoveArray(_array(name))
+            actor.GetProperty().RemoveTexture(glsl.TABLE)
+        self._actors = []
+
+    def _styles(self) -> list[vtkShaderProperty]:
+        """Return the shader properties, each once."""
+        found = [actor.GetShaderProperty() for actor, _ in self._actors]
+        return [one for at, one in enumerate(found) if one not in found[:at]]
+
+    def _give(self, actor: vtkActor, vertices: "AnyArray | None") -> None:
+        mapper = actor.GetMapper()
+        points = mapper.GetInput().GetPointData()
+        for name, values in self.look.attributes.items():
+            chosen = values if vertices is None else values[vertices]
+            array = numpy_to_vtk(chosen, deep=False)
+            array.SetName(_array(name))
+            points.AddArray(array)
+            mapper.MapDataArrayToVertexAttribute(
+                name, _array(name), vtkDataObject.FIELD_ASSOCIATION_POINTS, -1
+            )
+        mapper.ScalarVisibilityOff()
+        # Positions as they are: VTK would hand them over in a frame of its own.
+        mapper.SetVBOShiftScaleMethod(_UNSHIFTED)
+        if self._texture is not None:
+            actor.GetProperty().SetTexture(glsl.TABLE, self._texture)
+
+    @staticmethod
+    def _count(actor: vtkActor, lights: int, exposure: float) -> None:
+        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+        uniforms.SetUniformi(glsl.COUNT, lights)
+        uniforms.SetUniformf(glsl.EXPOSURE, exposure)
+
+    @staticmethod
+    def _set(actor: vtkActor, numbers: dict[str, tuple[float, ...]]) -> None:
+        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+        for name, values in numbers.items():
+            uniforms.SetUniform1fv(name, len(values), values)
+
+
+def _array(name: str) -> str:
+    return f"pixel {name}"
+
+
+def _replace(style: vtkShaderProperty, look: PixelLook) -> None:
+    declared, done, taken = glsl.passed(look)
+    add = style.AddVertexShaderReplacement
+    add(_DECLARED, True, declared + _DECLARED, False)
+    add(_DONE, True, done + _DONE, False)
+    add = style.AddFragmentShaderReplacement
+    add(_DECLARED, True, taken + _DECLARED, False)
+    # Behind the sampler, which VTK declares itself.
+    add(_TEXTURES, True, f"{_TEXTURES}\n{glsl.functions(look)}", False)
+    add(_COLOR, True, glsl.color(look), False)
+
+
+def _texture(table: SingleArray) -> vtkTexture:
+    channels, samples = table.shape
+    image = vtkImageData()
+    image.SetDimensions(samples, channels, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(table.ravel(), deep=True))
+    made = vtkTexture()
+    made.SetInputData(image)
+    made.SetColorModeToDirectScalars()
+    made.InterpolateOff()
+    made.MipmapOff()
+    made.RepeatOff()
+    return made
