@@ -10,6 +10,7 @@ import os
 import shutil
 import stat
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -93,6 +94,7 @@ def _private_folder() -> Path:
 
 
 _FOLDER = str(cache_folder())
+_SETTING = threading.Lock()
 
 
 def _keep_going(cache: Any) -> None:
@@ -153,18 +155,20 @@ def compiled(*, parallel: bool = False, packed: bool = False) -> Callable[[F], F
     """
 
     def decorate(function: F) -> F:
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = _FOLDER
-        try:
-            # error_model="numpy": no branch for division by zero, so that loops vectorise.
-            jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
-            dispatcher = jit(function)
-            _keep_going(dispatcher._cache)
-            _tell_when_missing(dispatcher._cache)
-            if packed:
-                _pack(dispatcher)
-            return dispatcher
-        finally:
-            numba.config.CACHE_DIR = before
+        # Two threads may import plug-ins at the same time; the folder is one setting for all.
+        with _SETTING:
+            before = numba.config.CACHE_DIR
+            numba.config.CACHE_DIR = _FOLDER
+            try:
+                # error_model="numpy": no branch for division by zero, so that loops vectorise.
+                jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
+                dispatcher = jit(function)
+                _keep_going(dispatcher._cache)
+                _tell_when_missing(dispatcher._cache)
+                if packed:
+                    _pack(dispatcher)
+                return dispatcher
+            finally:
+                numba.config.CACHE_DIR = before
 
     return decorate

@@ -20,6 +20,7 @@ class Banner(QFrame):
         self.setObjectName("banner")
         self.setStyleSheet(
             "#banner { background: #8a2f24; } #banner QLabel, #banner QToolButton { color: white; }"
+            " #answer { background: transparent; border: 1px solid white; padding: 1px 8px; }"
         )
         self.label = QLabel(self)
         self.label.setWordWrap(True)
@@ -31,10 +32,12 @@ class Banner(QFrame):
         close.setText("\N{MULTIPLICATION SIGN}")
         close.setAutoRaise(True)
         close.setAccessibleName("Close the message")
-        close.clicked.connect(self.hide)
+        close.clicked.connect(self._on_close)
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 4, 4)
         self.button = QToolButton(self)
+        self.button.setObjectName("answer")
+        self.button.setAccessibleName("Answer to the message")
         self.button.hide()
         self.button.clicked.connect(self._on_button)
         self._answer: Callable[[], None] | None = None
@@ -42,6 +45,11 @@ class Banner(QFrame):
         row.addWidget(self.button, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(close, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()
+
+    @property
+    def offering(self) -> bool:
+        """Whether it waits for an answer."""
+        return self._answer is not None
 
     def warn(self, text: str) -> None:
         """Show a message.
@@ -74,6 +82,10 @@ class Banner(QFrame):
         self._answer = call
         self.button.show()
         self.show()
+
+    def _on_close(self) -> None:
+        self._answer = None
+        self.hide()
 
     def _on_button(self) -> None:
         answer, self._answer = self._answer, None

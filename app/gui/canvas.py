@@ -181,6 +181,11 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self._recolor(0, self.composition.panels[0])
 
     @property
+    def held(self) -> bool:
+        """Whether a drag goes on."""
+        return self._pressed is not None
+
+    @property
     def coarsely(self) -> bool:
         """Whether something moves and is drawn coarsely."""
         return self._stand_in.shown

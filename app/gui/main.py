@@ -30,13 +30,15 @@ def run(argument: str | None) -> int:
     _require_screen()
     from qtpy.QtWidgets import QApplication
 
+    from app.gui import theme
     from app.gui.window import Window
 
     application = QApplication.instance() or QApplication(sys.argv[:1])
     application.setApplicationName("Curvelight")
     window = Window()
+    theme.apply(theme.chosen(window.settings))
     window.show()
-    window.offer_recovery()
+    window.rescue.offer()
     # Asked for once the window is there, so that a broken file is told in it.
     if argument is None:
         window.start()

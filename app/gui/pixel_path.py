@@ -50,7 +50,7 @@ class PixelPath(QObject):
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.setInterval(_REST)
-        self._rest.timeout.connect(controller.refresh)
+        self._rest.timeout.connect(self._on_rest)
         self._still = QTimer(self)
         self._still.setSingleShot(True)
         self._still.setInterval(_REST)
@@ -93,6 +93,7 @@ class PixelPath(QObject):
         if self.reason:
             self._canvas.shade_by_pixel(None)
             self._look = None if unsupported(session, subject) else self._look
+            self._canvas.update()  # so that the status bar says it
         elif self._canvas.by_pixel is not None:
             self._move()
         elif self._measured(session, subject):
@@ -168,13 +169,21 @@ class PixelPath(QObject):
             return  # the picture that is being computed takes it off
         canvas.by_pixel.move(session, canvas.camera, exposure)
 
+    def _on_rest(self) -> None:
+        if self._canvas.held or self._controller.document.dragging:
+            self._rest.start()
+        else:
+            self._controller.refresh()
+
     def _follows(self, changed: set[str]) -> bool:
         controller = self._controller
         if self._canvas.by_pixel is None or self._race is not None:
             return False
         dragged = {"camera", "lights"} if controller.document.dragging else {"camera"}
-        if not changed <= dragged or not isinstance(controller.session.camera, Camera):
+        if not changed <= dragged:
             return False
+        if "camera" in changed and not isinstance(controller.session.camera, Camera):
+            return False  # a view by its name is fitted to the mesh
         self._rest.start()
         return True
 

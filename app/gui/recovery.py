@@ -76,9 +76,7 @@ class Recovery:
         Seconds that changes are gathered.
     """
 
-    def __init__(
-        self, folder: Path, told: Callable[[str], None], delay: float = _DELAY
-    ) -> None:
+    def __init__(self, folder: Path, told: Callable[[str], None], delay: float = _DELAY) -> None:
         self._folder, self._told, self._delay = folder, told, delay
         self.file = folder / f"{os.getpid()}-{uuid.uuid4().hex[:8]}.json"
         self._lock: BinaryIO | None = None
@@ -143,7 +141,8 @@ class Recovery:
             for old in self._folder.glob(".curvelight-*"):
                 if time.time() - old.stat().st_mtime > _STALE:
                     old.unlink()
-        for file in self._folder.glob("*.json"):
+        # Not those that a crash left half written, whose names begin with a point.
+        for file in self._folder.glob("[!.]*.json"):
             left = self._take(file) if file != self.file else None
             if left is not None:
                 found.append(left)
@@ -175,6 +174,7 @@ class Recovery:
         _release(left.lock, left.file)
 
     def _take(self, file: Path) -> Left | None:
+        lock = None
         try:
             lock = locked(file.with_suffix(".lock"))
             if lock is None:  # its process lives, or another start was faster
@@ -184,6 +184,8 @@ class Recovery:
                 return None
             return Left(file, msgspec.json.decode(file.read_bytes(), type=Kept), lock)
         except (OSError, msgspec.MsgspecError) as error:
+            if lock is not None:
+                _release(lock, file)
             self._told(f"{file}: a session left by a crash cannot be read ({error}); delete it")
             return None
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from qtpy.QtCore import QObject, Qt, QTimer, Signal
+from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
@@ -12,15 +12,19 @@ from app.gui import docks, menus
 from app.gui.actions import MENUS, Action, Actions
 from app.gui.banner import Banner
 from app.gui.canvas import Canvas
-from app.gui.coarse import Coarse, coarse
+from app.gui.coarse import coarse
 from app.gui.comparing import Comparing
 from app.gui.controller import SESSION_SUFFIX, Controller, Outcome
+from app.gui.journal import Journal
+from app.gui.layout import Layout
 from app.gui.light_tool import LightTool
 from app.gui.lights import Lights
+from app.gui.open_menus import add_open_menus
 from app.gui.pixel_path import PixelPath
 from app.gui.progress_bar import ProgressBar
-from app.gui.recovery import Lost, Recovery, lost
+from app.gui.rescue import Rescue
 from app.gui.settings import Settings
+from app.gui.shortcuts import Shortcuts
 from app.gui.status import Status
 from app.gui.unit_bar import UnitBar
 from app.gui.units import Units
@@ -32,7 +36,6 @@ from app.session import Camera, Session
 
 # About as many triangles as a software renderer turns smoothly.
 _COARSE = 30_000
-_KEEP = 1000  # ms after a change, until it is kept for the case of a crash
 
 
 class Poster(QObject):
@@ -76,6 +79,7 @@ class Window(QMainWindow):
         """Asks a person about unsaved changes."""
         self._poster = Poster()
         self.controller = Controller(self._poster.post, session)
+        self.journal = Journal(self.controller)
         self.setAcceptDrops(True)
         self.resize(1280, 800)
         self.canvas = Canvas(self)
@@ -102,37 +106,21 @@ class Window(QMainWindow):
         self.comparing = Comparing(self.controller, self.canvas)
         self.docks = docks.add_all(self)
         self.actions_ = Actions()
+        self.shortcuts = Shortcuts(self.actions_, self.settings)
+        self.shortcuts.changed.connect(self._on_shortcut)
         self.qactions: dict[str, QAction] = {}
         menus.add_all(self)
         self._make_menus()
+        add_open_menus(self)
+        self.layout_ = Layout(self)
         self._retitle()
 
     def start(self) -> None:
         """Ask for the first picture."""
         self.controller.refresh()
 
-    def offer_recovery(self) -> None:
-        """Offer the newest session that a crash left behind, if there is one."""
-        for one in lost(self.settings.path.parent)[:1]:
-            self.banner.offer(
-                f"{one.session.mesh}: the last window of it was not closed, and had changes that "
-                "no file holds",
-                "Restore",
-                partial(self._restore, one),
-            )
-
-    def _restore(self, one: Lost) -> None:
-        self.controller.document.put("restore", one.session)
-        self.recovery.keep()
-        one.path.unlink(missing_ok=True)
-
     def _connect(self) -> None:
-        self.recovery = Recovery(self.controller.document, self.settings.path.parent)
-        self._keeping = QTimer(self)
-        self._keeping.setSingleShot(True)
-        self._keeping.setInterval(_KEEP)
-        self._keeping.timeout.connect(self.recovery.keep)
-        self.controller.document.history_changed.connect(self._keep_soon)
+        self.rescue = Rescue(self)
         controller = self.controller
         controller.previewed.connect(self._on_previewed)
         controller.shown.connect(self._on_shown)
@@ -145,9 +133,6 @@ class Window(QMainWindow):
         controller.document.history_changed.connect(self._retitle)
         self.canvas.moved.connect(controller.look)
         self.canvas.resized.connect(controller.resize)
-
-    def _keep_soon(self) -> None:
-        self._keeping.start()
 
     def _on_changed(self, session: Session, before: Session) -> None:
         if isinstance(session.camera, Camera) and session.camera != self.canvas.camera:
@@ -171,14 +156,12 @@ class Window(QMainWindow):
             self._on_shown(self.controller.outcome)
 
     def _on_loaded(self, subject: Subject) -> None:
-        self.banner.hide()
+        if not self.banner.offering:
+            self.banner.hide()
         self.settings.used(self.controller.session.mesh)
         self.canvas.give_coarse(None)
-
-        def give(found: Coarse | None) -> None:
-            self.canvas.give_coarse(found)
-
-        self.controller.run("coarse", lambda _: coarse(subject.mesh, _COARSE), give)
+        make = partial(coarse, subject.mesh, _COARSE)
+        self.controller.run("coarse", lambda _: make(), self.canvas.give_coarse)
 
     def _retitle(self) -> None:
         document = self.controller.document
@@ -209,8 +192,7 @@ class Window(QMainWindow):
         made.setObjectName(action.name)
         made.setStatusTip(action.doc)
         made.setToolTip(action.doc)
-        chosen = self.settings.get("shortcuts", {}).get(action.name, action.shortcut)
-        made.setShortcut(chosen)
+        made.setShortcut(self.shortcuts.key(action.name))
         made.setShortcutContext(Qt.ShortcutContext.WindowShortcut)
         if action.checked is not None:
             made.setCheckable(True)
@@ -218,6 +200,9 @@ class Window(QMainWindow):
         self.addAction(made)
         self.qactions[action.name] = made
         return made
+
+    def _on_shortcut(self, name: str) -> None:
+        self.qactions[name].setShortcut(self.shortcuts.key(name))
 
     def act(self, action: Action) -> None:
         """Do an action, and show its state and that of all others.
@@ -257,7 +242,8 @@ class Window(QMainWindow):
         if event.spontaneous() and not may_leave(self):
             event.ignore()
             return
-        self.recovery.forget()
+        self.rescue.close()
+        self.layout_.keep()
         self.controller.close()
         self.canvas.Finalize()
         super().closeEvent(event)

@@ -23,8 +23,8 @@ MODELS = ("curvature-lut", "lambert")
 """Shading models that are written as shaders."""
 HALF = 2.0
 """|a|/b in the middle of the table."""
-# Straight lines between are within 2e-6 of psi, and x takes a division where asinh takes a root
-# and a logarithm more.
+# Straight lines between are within 1e-5 of psi. The position in this table takes a division, that
+# in `PsiTable.rows` a root and a logarithm more, at each pixel.
 _SAMPLES = 1024
 _VIEWS = ("shade", "figure")
 

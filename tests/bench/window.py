@@ -4,7 +4,8 @@
 the same camera into windows of the same size, without multisampling, taking turns; the least time
 of several frames counts. A light drag is what the window does while the mouse moves: colours
 computed anew from the session and sent to the renderer, beside the frame that follows. A swipe is
-a frame of two models on one surface after its divider was moved, beside a frame of one.
+a frame of two models on one surface after its divider was moved, beside a frame of one. A frame per
+pixel is one of the fragment shader, with a light that moved, beside a plain one.
 """
 
 import argparse
@@ -23,7 +24,7 @@ from tests.bench.pictures import million_triangles
 
 _SIZE = (1024, 768)
 _FRAMES = 9
-_LIMITS = {"frame": 1.0, "light drag": 0.15, "swipe": 1.4}
+_LIMITS = {"frame": 1.0, "light drag": 0.15, "swipe": 1.4, "frame per pixel": 1.3}
 
 
 class Ours:
@@ -106,6 +107,34 @@ def frame(label: str, ours: Ours, plain: Plain) -> dict[str, Any]:
     return {"what": "frame", "mesh": label, "ours": own, "beside": other, "ratio": own / other}
 
 
+def frame_per_pixel(label: str, ours: Ours, plain: Plain) -> dict[str, Any]:
+    """Return the row of a frame of the shader after a light was moved: ours over a plain one."""
+    from app.camera import axes
+    from app.shader.drawing import PixelLight
+    from app.shader.look import look_of
+
+    session, made = ours.session, ours.made
+    look = look_of(session, ours.pipeline, axes(made.camera))
+    light = PixelLight(look, [(ours.drawn[0].actor, None)], made.camera.target)
+
+    def drag(step: int) -> None:
+        first, *others = session.lights
+        moved = replace(first, direction=(0.9, 0.3 + 0.01 * step, 0.3))
+        light.move(replace(session, lights=(moved, *others)), made.camera, made.exposure or 1.0)
+        ours.draw()
+
+    own, other = least(drag, lambda _: plain.draw())
+    light.remove()
+    ours.draw()
+    return {
+        "what": "frame per pixel",
+        "mesh": label,
+        "ours": own,
+        "beside": other,
+        "ratio": own / other,
+    }
+
+
 def light_drag(label: str, ours: Ours) -> dict[str, Any]:
     """Return the row of a light that is dragged: computing and sending over the frame.
 
@@ -155,6 +184,7 @@ def rows(folder: Path) -> list[dict[str, Any]]:
         ours = Ours(Session(mesh=mesh, size=_SIZE), Pipeline())
         plain = Plain(ours)
         found.append(frame(label, ours, plain))
+        found.append(frame_per_pixel(label, ours, plain))
         if mesh == "sample:marble-face-raw":
             found.append(light_drag(label, ours))
             found.append(swipe(label, ours))

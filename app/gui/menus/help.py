@@ -45,6 +45,13 @@ def actions(window: "Window") -> list[Action]:
             "H",
         ),
         Action(
+            "help.shortcuts",
+            "Help",
+            "Change shortcuts\N{HORIZONTAL ELLIPSIS}",
+            "Give actions other keys",
+            partial(_shortcuts, window),
+        ),
+        Action(
             "help.about",
             "Help",
             "About\N{HORIZONTAL ELLIPSIS}",
@@ -107,6 +114,12 @@ def _keys(window: "Window") -> None:
     column.addWidget(scroll)
     sheet.resize(text.sizeHint().width() + 60, round(window.height() * 0.8))
     sheet.open()
+
+
+def _shortcuts(window: "Window") -> None:
+    from app.gui.shortcut_editor import ShortcutEditor
+
+    ShortcutEditor(window).open()
 
 
 def _about(window: "Window") -> None:

@@ -32,8 +32,9 @@ def open_window(qtbot) -> Iterator[Callable]:
 
     made = []
 
-    def opened(session=None, size=(1000, 700)) -> Window:
+    def opened(session=None, size=(1000, 700), path="vertex") -> Window:
         window = Window(session)
+        window.pixel_path.choose(path)  # which is faster would depend on the machine
         made.append(window)
         window.resize(*size)
         window.show()

@@ -1,85 +1,97 @@
 """Kill it at any moment: the next start offers the session, and no file is half written."""
 
-import os
 import signal
 import subprocess
 import sys
 import time
 
+import msgspec
 import numpy as np
 from qtpy.QtCore import Qt
 
-from app.gui.document import Document
-from app.gui.recovery import Recovery, lost
-from app.session import Session, read
+from app.gui.recovery import Kept, Recovery
+from app.session import Session
 from tests.app.gui.conftest import settled
 
+# Longer than any of the tests' waits.
+_NEVER = 1e9
 _CHILD = """
-import random, sys, time
+import sys
 from pathlib import Path
-from app.gui.document import Document
+from msgspec.structs import replace
 from app.gui.recovery import Recovery
 from app.session import Session
-document = Document(Session(mesh="sample:sphere"))
-recovery = Recovery(document, Path(sys.argv[1]))
+recovery = Recovery(Path(sys.argv[1]), print, delay=0.0)
+session = Session(mesh=sys.argv[2])
 print("ready", flush=True)
 step = 0
 while True:
     step += 1
-    document.change(f"exposure {step}", exposure=1.0 + 0.001 * step)
-    recovery.keep()
+    recovery.keep(replace(session, exposure=1.0 + 0.001 * step), None)
 """
 
 
+def _killed(folder, seconds: float, mesh: str = "sample:sphere") -> None:
+    """Run a process that keeps sessions without a pause, and kill it in the midst."""
+    command = [sys.executable, "-c", _CHILD, str(folder), mesh]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as child:
+        assert child.stdout.readline() == b"ready\n"
+        while not list(folder.glob(f"{child.pid}-*.json")):
+            time.sleep(0.01)
+        time.sleep(seconds)
+        child.send_signal(signal.SIGKILL)
+
+
 def test_what_is_killed_is_offered_whole(config) -> None:
-    random = np.random.default_rng(4)
+    random, folder, told = np.random.default_rng(4), config / "unfinished", []
     for kill in range(4):
-        command = [sys.executable, "-c", _CHILD, str(config)]
-        with subprocess.Popen(command, stdout=subprocess.PIPE) as child:
-            assert child.stdout.readline() == b"ready\n"
-            while len(list((config / "unfinished").glob(f"{child.pid}-*"))) == 0:
-                time.sleep(0.01)
-            time.sleep(0.2 * random.random())
-            child.send_signal(signal.SIGKILL)
-        found = lost(config)
+        _killed(folder, 0.2 * random.random())
+        found = Recovery(folder, told.append).find()
         assert len(found) == kill + 1
-        assert all(one.session.exposure > 1.0 for one in found)
-        assert all(read(one.path) == one.session for one in found)
+        assert all(one.kept.session.exposure > 1.0 for one in found)
+        assert not told
+        for one in found:
+            one.lock.close()
 
 
 def test_a_living_windows_session_is_nobody_elses(config) -> None:
-    document = Document(Session(mesh="sample:sphere"))
-    recovery = Recovery(document, config)
-    document.change("exposure", exposure=2.0)
-    recovery.keep()
-    assert recovery.path.exists()
-    assert lost(config) == []
-    recovery.forget()
-    assert not recovery.path.exists()
+    mine, told = Recovery(config, print, delay=0.0), []
+    mine.keep(Session(exposure=2.0), None)
+    while not mine.file.exists():
+        time.sleep(0.01)
+    assert Recovery(config, told.append).find() == []
+    mine.close()
+    assert list(config.iterdir()) == []
+    assert not told
+
+
+def test_what_is_forgotten_is_not_written_after_all(config) -> None:
+    mine = Recovery(config, print, delay=_NEVER)
+    mine.keep(Session(exposure=2.0), None)
+    mine.forget()
+    mine.close()
+    assert not list(config.glob("*.json"))
 
 
 def test_the_next_window_offers_it_and_a_click_restores_it(open_window, qtbot, config) -> None:
     folder = config / "unfinished"
-    folder.mkdir(parents=True)
-    ended = subprocess.run(
-        [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, check=True
-    )
-    kept = Document(Session(mesh="sample:saddle"))
-    kept.change("exposure", exposure=3.0)
-    path = Recovery(kept, config).path
-    Recovery.keep(recovery := Recovery(kept, config))
-    gone = folder / f"{int(ended.stdout)}-1.json"
-    os.replace(recovery.path, gone)
-    (folder / f"{int(ended.stdout)}-2.json").write_bytes(b'{"mesh": ')
-    assert path.parent == folder
+    _killed(folder, 0.0, "sample:saddle")
+    (folder / "1-half.json").write_bytes(b'{"mesh": ')
     window = open_window(Session(mesh="sample:sphere"))
-    window.offer_recovery()
+    said = []
+    window.controller.noted.connect(said.append)
+    window.rescue.offer()
+    qtbot.waitUntil(lambda: any("1-half.json" in one for one in said))
+    window.controller.loaded.emit(window.controller.outcome.subject)
+    assert window.banner.isVisible(), "the first mesh to come must not take the offer away"
     assert "sample:saddle" in window.banner.label.text()
     qtbot.mouseClick(window.banner.button, Qt.MouseButton.LeftButton)
     settled(qtbot, window)
-    assert window.controller.session.exposure == 3.0
+    assert window.controller.session.exposure > 1.0
     assert window.controller.session.mesh == "sample:saddle"
-    assert not gone.exists()
-    assert window.recovery.path.exists()
+    assert window.controller.document.dirty
+    kept = msgspec.json.decode(window.rescue.recovery.file.read_bytes(), type=Kept)
+    assert kept.session.mesh == "sample:saddle"
     window.close()
-    assert list(folder.iterdir()) == []
+    # What the kill left of a file that was being written goes away after a minute.
+    assert [one.stem for one in folder.glob("[!.]*.json")] == ["1-half"]

@@ -1,0 +1,113 @@
+"""Shading at pixels in the window: what chooses it, what moves it, what the status bar says."""
+
+import numpy as np
+import pytest
+from qtpy.QtCore import QPoint, Qt
+from qtpy.QtTest import QTest
+
+from app.gui.status import Status
+from app.session import Camera, Method, Session
+from tests.app.gui.conftest import pixels, settled
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+def _says(window) -> str:
+    pixels(window)
+    window.canvas.drew.emit(0.01)
+    return window.findChild(Status).text().partition(",")[0]
+
+
+def _by_pixel(qtbot, window) -> None:
+    window.qactions["view.shade_pixel"].trigger()
+    qtbot.waitUntil(lambda: window.canvas.by_pixel is not None)
+    settled(qtbot, window)
+
+
+def _drag(qtbot, canvas, keys, during) -> None:
+    QTest.mousePress(canvas, LEFT, keys, QPoint(300, 300))
+    for step in range(1, 5):
+        QTest.mouseMove(canvas, QPoint(300 + 15 * step, 300))
+        qtbot.wait(10)
+    during()
+    QTest.mouseRelease(canvas, LEFT, keys, QPoint(360, 300))
+
+
+def _alike(window, other) -> bool:
+    # The sample's triangles are larger than pixels: at the rim, where the exit Fresnel factor falls
+    # to 0 within one of them, the ways differ by far more than a byte, elsewhere by none or one.
+    mesh = (other != other[2, 2]).any(axis=2)
+    return np.median(np.abs(pixels(window).astype(int) - other)[mesh]) <= 1
+
+
+def test_the_menu_chooses_and_the_status_bar_says(window, qtbot) -> None:
+    vertex = pixels(window).astype(int)
+    assert _says(window) == "per vertex"
+    assert "chosen" in window.findChild(Status).toolTip()
+    _by_pixel(qtbot, window)
+    assert _says(window) == "per pixel"
+    assert window.qactions["view.shade_pixel"].isChecked()
+    assert _alike(window, vertex) and (pixels(window) != vertex).any()
+    window.qactions["view.shade_vertex"].trigger()
+    assert _says(window) == "per vertex"
+    np.testing.assert_array_equal(pixels(window), vertex)
+    assert window.settings.get("shading path", "") == "vertex"
+
+
+@pytest.mark.parametrize("what", ["camera", "light"])
+def test_a_drag_computes_nothing_until_it_rests(window, qtbot, what) -> None:
+    _by_pixel(qtbot, window)
+    shown, before, during = [], pixels(window).astype(int), []
+    window.controller.shown.connect(shown.append)
+    keys = Qt.KeyboardModifier.AltModifier if what == "light" else Qt.KeyboardModifier.NoModifier
+
+    def look() -> None:
+        during.append(pixels(window).astype(int))
+        assert not shown
+
+    _drag(qtbot, window.canvas, keys, look)
+    assert np.abs(during[0] - before).max() > 10
+    qtbot.waitUntil(lambda: len(shown) > 0)
+    settled(qtbot, window)
+    session = window.controller.session
+    assert shown[-1].session.lights == session.lights
+    if what == "camera":
+        assert isinstance(session.camera, Camera)
+        assert shown[-1].session.camera == session.camera
+    # The same lights and camera, once more at vertices.
+    pixel = pixels(window)
+    window.qactions["view.shade_vertex"].trigger()
+    assert _alike(window, pixel.astype(int))
+
+
+def test_what_has_no_shader_is_shaded_at_vertices_with_the_reason(window, qtbot) -> None:
+    _by_pixel(qtbot, window)
+    window.controller.change("model", model=Method("wrap"))
+    settled(qtbot, window)
+    assert _says(window) == "per vertex"
+    assert "wrap" in window.findChild(Status).toolTip()
+    window.controller.change("model", model=Method("lambert"))
+    settled(qtbot, window)
+    assert _says(window) == "per pixel"
+    window.controller.change("view", view="figure")
+    settled(qtbot, window)
+    assert _says(window) == "per pixel"
+
+
+@pytest.mark.parametrize(("seconds", "way"), [(1e3, "per pixel"), (-1e3, "per vertex")])
+def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way) -> None:
+    """Frames are measured; what computing takes is given, so that one or the other wins."""
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: seconds)
+    window = open_window(Session(mesh="sample:sphere"), path="automatic")
+    qtbot.waitUntil(lambda: window.pixel_path.racing, timeout=20_000)
+    qtbot.waitUntil(lambda: not window.pixel_path.racing, timeout=60_000)
+    settled(qtbot, window)
+    assert _says(window) == way
+    assert (window.pixel_path.reason != "") == (way == "per vertex")
+
+
+def test_computing_is_measured(window) -> None:
+    from app.gui.pixel_race import step_seconds
+
+    made = window.controller.outcome.composition
+    assert 0.0 < step_seconds(made, window.controller.pipeline) < 60.0
