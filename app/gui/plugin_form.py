@@ -76,6 +76,7 @@ class PluginForm(QWidget):
             return
         if self.form is not None:
             self._column.removeWidget(self.form)
+            self.form.hide()  # it is deleted later, and would lie below the new one until then
             self.form.deleteLater()
         self._formed = method.name
         self.form = ParameterForm(plugin, method.parameters, self._on_parameters)
