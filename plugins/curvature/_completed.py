@@ -139,8 +139,11 @@ def _frames(
         a = b = 0.0
         for axis in range(3):
             a, b = a + along[i, axis] * u[axis], b + along[i, axis] * v[axis]
+        # A direction may be too small to be squared, or to be divided by its own length.
+        largest = max(abs(a), abs(b))
+        a, b = (a / largest, b / largest) if 0.0 < largest < np.inf else (1.0, 0.0)
         length = np.hypot(a, b)
-        a, b = (a / length, b / length) if length > 0.0 else (1.0, 0.0)
+        a, b = a / length, b / length
         if turned[i]:
             a, b = b, -a
         for axis in range(3):
