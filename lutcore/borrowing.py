@@ -6,12 +6,15 @@ from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.tensors import in_space, in_tangent_plane
 
-# Passes of the iteration: reaches that many rings, more than a corner of a rim closes.
-_PASSES = 16
+# Sweeps of the iteration, ring by ring from the inside out and back; and passes over islands that
+# have no inside, all their vertices at once.
+_SWEEPS, _PASSES_ALONE = 2, 48
 # Squared error that remains, over what the sums say: changes are not the same everywhere.
 _CAUTION = 3.0
-# Pairs of neighbours that tell how fast curvature changes.
-_PAIRS = 20_000
+# Near a rim neighbours differ by more than elsewhere, squared, by about this.
+_WIDER = 4.0
+# Vertices that tell, with their neighbours, how fast curvature changes.
+_STARS = 20_000
 
 
 @compiled()
@@ -23,6 +26,7 @@ def borrow(
     closed: BoolArray,
     tensors: FloatArray,
     square: FloatArray,
+    doubt: FloatArray,
 ) -> None:
     """Join the tensors of weak stars with those of their neighbours, by their errors.
 
@@ -46,12 +50,13 @@ def borrow(
         Entries xx, xy, yy; rewritten at `weak`.
     square : ndarray, shape=(n,)
         Squared error bars; rewritten likewise.
+    doubt : ndarray, shape=(w,)
+        Squared error that each of them counts with in its own favour: `square`, or more.
     """
     number = np.full(len(normals), -1, np.int32)
     for w in range(len(weak)):
         number[weak[w]] = w
-    step = _step(start, neighbour, normals, number, tensors, np.median(square))
-    reached = ~closed
+    step = _WIDER * _step(start, neighbour, normals, number, tensors, np.median(square))
     measured = np.empty((len(weak), 6))
     certainty = np.zeros(len(weak))
     now = np.empty((len(weak), 7))
@@ -60,46 +65,114 @@ def borrow(
         now[w, :6] = measured[w]
         now[w, 6] = square[weak[w]]
         if not closed[w]:
-            certainty[w] = 1.0 / max(square[weak[w]], 1e-30)
-    inside = np.zeros_like(now)
+            certainty[w] = 1.0 / max(doubt[w], 1e-30)
+    order, rings = _outwards(start, neighbour, weak, number)
+    reached = rings[-2]
+    # The first sweep starts from the inside alone; an island that has none, from itself.
+    known = ~closed
+    known[order[:reached]] = False
+    state = (now, known)
+    fixed = (measured, certainty, closed, step)
+    inside = (normals, tensors, square)
+    for sweep in range(2 * _SWEEPS):
+        for turn in range(len(rings) - 2):
+            ring = turn if sweep % 2 == 0 else len(rings) - 3 - turn
+            members = order[rings[ring] : rings[ring + 1]]
+            _update(members, start, neighbour, weak, number, inside, fixed, state)
+    for _ in range(_PASSES_ALONE):
+        _update(order[reached:], start, neighbour, weak, number, inside, fixed, state)
     for w in range(len(weak)):
-        for at in range(start[weak[w]], start[weak[w] + 1]):
-            j = neighbour[at]
-            if number[j] < 0:
-                reached[w] = True
-                inside[w, :6] += np.array(in_space(normals[j], tensors[j]))
-                inside[w, 6] += square[j]
-    after = np.empty_like(now)
-    total = np.empty(7)
-    for _ in range(_PASSES):
-        before = reached.copy()
-        for w in range(len(weak)):
-            total[:] = inside[w]
-            count = 0
-            for at in range(start[weak[w]], start[weak[w] + 1]):
-                other = number[neighbour[at]]
-                if other < 0:
-                    count += 1
-                elif before[other]:
-                    count += 1
-                    for entry in range(7):
-                        total[entry] += now[other, entry]
-            after[w] = now[w]
-            if count > 0:
-                reached[w] = True
-                pull = count / step
-                for entry in range(6):
-                    own = certainty[w] * measured[w, entry]
-                    after[w, entry] = (own + total[entry] / step) / (certainty[w] + pull)
-                # Neighbours err alike: together they know no more than one of them does.
-                after[w, 6] = 1.0 / (certainty[w] + 1.0 / (total[6] / count + step))
-        now, after = after, now
-    for w in range(len(weak)):
-        if not reached[w]:
+        if not known[w]:
             continue
         i = weak[w]
         tensors[i, 0], tensors[i, 1], tensors[i, 2] = in_tangent_plane(normals[i], now[w, :6])
         square[i] = _CAUTION * now[w, 6]
+
+
+@compiled()
+def _update(
+    members: IndexArray,
+    start: IndexArray,
+    neighbour: IndexArray,
+    weak: IndexArray,
+    number: IndexArray,
+    inside: tuple[FloatArray, FloatArray, FloatArray],
+    fixed: tuple[FloatArray, FloatArray, BoolArray, float],
+    state: tuple[FloatArray, BoolArray],
+) -> None:
+    """Join each member with its neighbours, all as they were before: their order is nothing."""
+    normals, tensors, square = inside
+    measured, certainty, closed, step = fixed
+    now, known = state
+    after = np.empty((len(members), 7))
+    counts = np.zeros(len(members), np.int32)
+    total = np.empty(7)
+    for m in range(len(members)):
+        w = members[m]
+        total[:] = 0.0
+        for at in range(start[weak[w]], start[weak[w] + 1]):
+            j = neighbour[at]
+            other = number[j]
+            if other < 0:
+                counts[m] += 1
+                xx, xy, xz, yy, yz, zz = in_space(normals[j], tensors[j])
+                total[0], total[1], total[2] = total[0] + xx, total[1] + xy, total[2] + xz
+                total[3], total[4], total[5] = total[3] + yy, total[4] + yz, total[5] + zz
+                total[6] += square[j]
+            elif known[other]:
+                counts[m] += 1
+                for entry in range(7):
+                    total[entry] += now[other, entry]
+        pull = counts[m] / step
+        for entry in range(6):
+            own = certainty[w] * measured[w, entry]
+            after[m, entry] = (own + total[entry] / step) / (certainty[w] + pull)
+        # Neighbours err alike: together they know no more than one of them does.
+        after[m, 6] = 1.0 / (certainty[w] + 1.0 / (total[6] / max(counts[m], 1) + step))
+    for m in range(len(members)):
+        w = members[m]
+        if counts[m] > 0:
+            now[w] = after[m]
+        known[w] = known[w] or counts[m] > 0 or not closed[w]
+
+
+@compiled()
+def _outwards(
+    start: IndexArray, neighbour: IndexArray, weak: IndexArray, number: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return the places in `weak`, those beside other vertices first, then ring by ring.
+
+    The second array says where each ring begins; the last are those that no ring reaches.
+    """
+    order = np.empty(len(weak), np.int32)
+    rings = np.zeros(len(weak) + 3, np.int32)
+    listed = np.zeros(len(weak), np.bool_)
+    found = 0
+    for w in range(len(weak)):
+        for at in range(start[weak[w]], start[weak[w] + 1]):
+            if number[neighbour[at]] < 0:
+                order[found] = w
+                listed[w] = True
+                found += 1
+                break
+    ring = 0
+    while rings[ring] < found:
+        ring += 1
+        rings[ring] = found
+        for at_front in range(rings[ring - 1], rings[ring]):
+            i = weak[order[at_front]]
+            for at in range(start[i], start[i + 1]):
+                other = number[neighbour[at]]
+                if other >= 0 and not listed[other]:
+                    order[found] = other
+                    listed[other] = True
+                    found += 1
+    for w in range(len(weak)):
+        if not listed[w]:
+            order[found] = w
+            found += 1
+    rings[ring + 1] = found
+    return order, rings[: ring + 2]
 
 
 @compiled()
@@ -115,17 +188,22 @@ def _step(
 
     Where all are weak, `otherwise`.
     """
-    every = 1 + len(normals) // _PAIRS
+    every = 1 + len(normals) // _STARS
     found = np.empty(len(normals) // every + 1)
     count = 0
     for i in range(0, len(normals), every):
-        if start[i] == start[i + 1]:
+        if number[i] >= 0:
             continue
-        j = neighbour[start[i]]
-        if number[i] < 0 and number[j] < 0:
-            d = np.array(in_space(normals[i], tensors[i]))
-            d -= np.array(in_space(normals[j], tensors[j]))
-            xx, xy, yy = in_tangent_plane(normals[i], d)
-            found[count] = 0.5 * (xx * xx + yy * yy) + xy * xy
+        total, pairs = 0.0, 0
+        own = np.array(in_space(normals[i], tensors[i]))
+        for at in range(start[i], start[i + 1]):
+            j = neighbour[at]
+            if number[j] < 0:
+                d = np.array(in_space(normals[j], tensors[j])) - own
+                xx, xy, yy = in_tangent_plane(normals[i], d)
+                total += 0.5 * (xx * xx + yy * yy) + xy * xy
+                pairs += 1
+        if pairs > 0:
+            found[count] = total / pairs
             count += 1
     return max(np.median(found[:count]), 1e-30) if count > 0 else max(otherwise, 1e-30)

@@ -147,7 +147,8 @@ def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]
     # Half a star, or one that has closed, tells less than its neighbours.
     weak = np.flatnonzero(on.operator.rim | (stretch[:, 2] < _CLOSED)).astype(np.int32)
     told = np.ones(len(weak), np.bool_)
-    borrow(*links, normals, weak, told, tensors, np.ones(len(tensors)))
+    even = np.ones(len(tensors))
+    borrow(*links, normals, weak, told, tensors, even, even[weak])
     return normals, tensors
 
 

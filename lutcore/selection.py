@@ -34,12 +34,14 @@ _ROUND = 0.15
 # squared error were larger by this.
 _DEARER = 1.3
 # Weights of scales fall with this power of their squared error, so that the choice has no seams.
-_SHARPNESS = 4
+_SHARPNESS = 2
 # Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
 # vertices of noisy surfaces; near rims neighbours err alike and more.
 _CALIBRATION, _CALIBRATION_AT_RIM = 0.72, 1.5
+# Joined scales err less than each of them, squared; near rims not.
+_JOINED = 0.81
 # Classes of vertices near a rim, which take over what inner vertices know better.
-_RIM = 3
+_RIM = 4
 # A one-sided cubic multiplies noise: worth trying only where that of unsmoothed stars is below
 # this share of the typical curvature.
 _QUIET = 0.15
@@ -104,7 +106,7 @@ def select(
         One value for each vertex, with the scale that was used there.
     """
     tell(progress, 0.0, "telling noise from bias")
-    tensors, square, used, found = _chosen(on, smoothed, lengths, precision, steadiness)
+    tensors, square, cost, used, found = _chosen(on, smoothed, lengths, precision, steadiness)
     typical = _typical_square(smoothed)
     rim = found.place <= _RIM
     jets = np.empty(0, np.int32)
@@ -113,10 +115,12 @@ def select(
         quiet = float(found.left[INTERIOR, 0]) < _QUIET**2 * typical
         if quiet and len(near):
             jets = jets_at(on, smoothed.normals, near, tensors, square)
+            cost[jets] = square[jets]
             used[jets] = 0.0  # as precise as unsmoothed stars, and to be left as they are
     weak = np.flatnonzero((used < 0.0) | rim).astype(np.int32)
     links = (on.operator.start, on.operator.neighbour)
-    borrow(*links, smoothed.normals, weak, used[weak] < 0.0, tensors, square)
+    closed = used[weak] < 0.0
+    borrow(*links, smoothed.normals, weak, closed, tensors, square, cost[weak])
     np.maximum(used, 0.0, out=used)
     few = specks(*links, np.flatnonzero(on.operator.rim).astype(np.int32))
     if len(few) < len(used):
@@ -149,7 +153,7 @@ def scales_chosen(
     ndarray, shape=(n,)
         Mesh units; -1 where every star has closed.
     """
-    return _chosen(on, smoothed, None, precision, steadiness)[2]
+    return _chosen(on, smoothed, None, precision, steadiness)[3]
 
 
 def _chosen(
@@ -158,8 +162,8 @@ def _chosen(
     lengths: FloatArray | float | None,
     precision: float,
     steadiness: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, Bands]:
-    """Return tensors, squared errors and scales as `_mix` does, and what they were judged by."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, Bands]:
+    """Return what `_mix` does, and what it was judged by."""
     found = bands(on, smoothed)
     wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
     if lengths is not None:
@@ -198,11 +202,15 @@ def _mix(
     floor: float,
     steadiness: float,
     unknown: float,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return tensors, squared error bars and scales; scale -1 where every star has closed."""
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return tensors, squared error bars, those with noise counted by `steadiness`, and scales.
+
+    The scale is -1 where every star has closed.
+    """
     vertices, count = energy.shape
     mixed = np.zeros((vertices, 3))
     square = np.empty(vertices)
+    cost = np.empty(vertices)
     used = np.empty(vertices)
     for i in prange(vertices):
         typical, rest = noise[place[i]].copy(), left[place[i]].copy()
@@ -211,6 +219,7 @@ def _mix(
             rest[j] *= room[i]
         calibration = _CALIBRATION if place[i] == INTERIOR else _CALIBRATION_AT_RIM
         errors = np.empty(count)
+        steady = np.empty(count)
         costs = np.empty(count)
         best = np.inf
         lost = 0.0
@@ -221,7 +230,7 @@ def _mix(
             heard = calibration * share * rest[j]
             if j == 0:
                 errors[j] = max(_RAW * energy[i, 0], heard)
-                costs[j] = steadiness * errors[j]
+                steady[j] = steadiness * errors[j]
             else:
                 finer, coarser = energy[i, j - 1], energy[i, j]
                 bias = max(0.0, coarser - share * typical[j])
@@ -237,12 +246,12 @@ def _mix(
                 errors[j] = heard + max(bias, lost * lost)
                 size = _square(tensors[i, max(j - 2, 1)])
                 errors[j] += min(_ROUND**2 * (size * scales[j] ** 2) ** 4, 100.0) * size
-                costs[j] = errors[j] + (steadiness - 1.0) * heard
+                steady[j] = errors[j] + (steadiness - 1.0) * heard
             if stretch[i, j] < _CLOSED or (j > 0 and stretch[i, j + 1] < _CLOSED):
-                errors[j] = costs[j] = np.inf
-            costs[j] = max(costs[j], floor) * _DEARER**j
+                errors[j] = steady[j] = np.inf
+            costs[j] = max(steady[j], floor) * _DEARER**j
             best = min(best, costs[j])
-        total = square[i] = used[i] = 0.0
+        total = square[i] = cost[i] = used[i] = 0.0
         for j in range(count):
             if wanted[i] == 0.0:
                 weight = (best / costs[j]) ** _SHARPNESS
@@ -250,12 +259,17 @@ def _mix(
                 weight = _share_of(scales, j, wanted[i]) if errors[j] < np.inf else 0.0
             if weight > 0.01:
                 total += weight
-                square[i] += weight * errors[j]
+                # Errors of nested scales are much the same one: they add up, not their squares.
+                square[i] += weight * np.sqrt(errors[j])
+                cost[i] += weight * np.sqrt(steady[j])
                 used[i] += weight * scales[j]
                 for entry in range(3):
                     mixed[i, entry] += weight * tensors[i, j, entry]
         if total > 0.0 and not (used[i] == 0.0 and stretch[i, 1] < _CLOSED):
-            square[i] /= total
+            square[i] = (square[i] / total) ** 2
+            if place[i] == INTERIOR:
+                square[i] *= _JOINED
+            cost[i] = (cost[i] / total) ** 2
             used[i] /= total
             for entry in range(3):
                 mixed[i, entry] /= total
@@ -264,8 +278,8 @@ def _mix(
             for entry in range(3):
                 mixed[i, entry] = tensors[i, 0, entry]
             # Nothing tells a flat speck from a curved one of the same size.
-            square[i] = energy[i, 0] + _square(tensors[i, 0]) + unknown * unknown
-    return mixed, square, used
+            square[i] = cost[i] = energy[i, 0] + _square(tensors[i, 0]) + unknown * unknown
+    return mixed, square, cost, used
 
 
 @compiled()

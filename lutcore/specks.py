@@ -5,8 +5,8 @@ import numpy as np
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
 
-# An open island of fewer vertices is a speck: about as many as a one-sided cubic takes.
-_FEW = 24
+# An open island of fewer vertices is a speck: most of them lie on its rim.
+_FEW = 48
 
 
 @compiled()

@@ -39,7 +39,7 @@ def contestants(mesh: TriangleMesh) -> dict[str, tuple[str, dict[str, float]]]:
     assert joined is not None
     return {
         "auto": ("auto", {}),
-        "auto, steadiness 1000": ("auto", {"steadiness": 1000.0}),
+        "auto, steadiness 300": ("auto", {"steadiness": 300.0}),
         "co-smoothing, 4 spacings": ("co-smoothing", {"scale": 4.0 * typical_spacing(joined)}),
         "rusinkiewicz2004": ("rusinkiewicz2004", {}),
         "vtk": ("vtk", {}),
