@@ -19,7 +19,7 @@ from lutcore.lowpass import SingleArray, low_pass
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
 from lutcore.stars import stars
-from lutcore.tensors import symmetric_fit, tangent_frame
+from lutcore.tensors import Vector, symmetric_fit, tangent_frame
 
 # A star narrower than this, in spacings, is a point to single precision.
 _POINT = 1e-4
@@ -131,6 +131,42 @@ def smooth(
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
 
+@compiled()
+def _normal(fields: FloatArray, change: SingleArray, base: int, i: int) -> Vector:
+    """Return the unit normal of a vertex after one of the smoothings."""
+    nx = fields[i, 3] + change[base, i, 3]
+    ny = fields[i, 4] + change[base, i, 4]
+    nz = fields[i, 5] + change[base, i, 5]
+    length = np.sqrt(nx * nx + ny * ny + nz * nz)
+    if length < 0.1:  # smoothed over a closed blob: no side is outside any more
+        nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
+    return nx / length, ny / length, nz / length
+
+
+@compiled(parallel=True)
+def smoothed_normals(fields: FloatArray, change: SingleArray, base: int) -> FloatArray:
+    """Return the normals after one smoothing, where nothing else of it is wanted.
+
+    Parameters
+    ----------
+    fields : ndarray, shape=(n, 6)
+        `Surface.fields`.
+    change : ndarray of float32, shape=(S, n, 6)
+        How far each smoothing moves them; see `lutcore.lowpass`.
+    base : int
+        Which of them.
+
+    Returns
+    -------
+    ndarray, shape=(n, 3)
+        Unit normals, to the last bit those of `shape_operators`.
+    """
+    normals = np.empty((len(fields), 3))
+    for i in prange(len(fields)):
+        normals[i, 0], normals[i, 1], normals[i, 2] = _normal(fields, change, base, i)
+    return normals
+
+
 @compiled(parallel=True, packed=True)
 def shape_operators(
     start: IndexArray,
@@ -167,13 +203,7 @@ def shape_operators(
     tensors = np.empty((count, scales + 1, 3), np.float32)
     stretch = np.empty((count, scales + 1), np.float32)
     for i in prange(count):
-        nx = fields[i, 3] + change[base, i, 3]
-        ny = fields[i, 4] + change[base, i, 4]
-        nz = fields[i, 5] + change[base, i, 5]
-        length = np.sqrt(nx * nx + ny * ny + nz * nz)
-        if length < 0.1:  # smoothed over a closed blob: no side is outside any more
-            nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
-        n = (nx / length, ny / length, nz / length)
+        n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n
         u, v = tangent_frame(n[0], n[1], n[2])
         open_before = 1.0

@@ -1,7 +1,8 @@
 """A surface as light sees it that spreads below it: without the bumps that it blurs.
 
 Each channel has its own normals and curvature, filtered by its own diffusion profile, all from one
-recurrence. The filters are those of `lutcore.response`.
+recurrence. The filters are those of `lutcore.response`. What has no channels gets its normals from
+the same recurrence.
 """
 
 from collections.abc import Callable
@@ -12,18 +13,19 @@ from numba import prange
 
 from lutcore.arrangement import arranged
 from lutcore.arrays import FloatArray, finite
-from lutcore.baking import glowing, resolved
+from lutcore.baking import bake, glowing, resolved
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
-from lutcore.cosmoothing import Surface, shape_operators, surface
+from lutcore.cosmoothing import Surface, shape_operators, smoothed_normals, surface
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
 from lutcore.estimation import sized_to_one
-from lutcore.lowpass import SingleArray, filtered, series_of
+from lutcore.lowpass import SingleArray, filtered, series_at, series_of
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
 from lutcore.response import response
+from lutcore.scale import scale_between
 from lutcore.tensors import in_space
 from lutcore.weld import weld
 
@@ -53,12 +55,19 @@ class Detail:
     widths : ndarray, shape=(3,)
         Root mean square distance along an axis that light spreads, mesh units: detail finer than
         this fades.
+    scale : float
+        One scale for what has no channels, mesh units; see `lutcore.scale.shading_scale`.
+    smooth : ndarray, shape=(n, 3)
+        Outward unit normals at that scale, to the last bit those that `auto` gives with its
+        curvature; zero where a vertex has no face.
     """
 
     normals: FloatArray
     shape: FloatArray
     bare: FloatArray
     widths: FloatArray
+    scale: float
+    smooth: FloatArray
 
 
 def detail_seen(
@@ -107,9 +116,11 @@ def detail_seen(
     widths = lengths * [np.sqrt(0.5 * spreading.mean_square(channel)) for channel in constants]
     count = len(mesh.vertices)
     normals, shape = np.zeros((3, count, 3)), np.zeros((3, count, 6))
+    glow = bake(substance, profile=spreading).glow / size
     if welded.mesh is None:
-        return Detail(normals, shape, np.zeros((count, 3)), widths)
-    shares = np.minimum(1.0, _WIDEST * welded.mesh.diagonal / widths)
+        return Detail(normals, shape, np.zeros((count, 3)), widths, glow, np.zeros((count, 3)))
+    extent = welded.mesh.diagonal
+    shares = np.minimum(1.0, _WIDEST * extent / widths)
     sized, unit = sized_to_one(welded.mesh)
     on = surface(sized, part(progress, 0.0, 0.3))
     filters = [
@@ -117,6 +128,8 @@ def detail_seen(
         for channel, length in zip(constants, shares * lengths / unit, strict=True)
         for passing in _passing(spreading, channel, length)
     ]
+    scale = scale_between(glow, extent, on.spacing * unit)
+    filters.append(series_at(scale / unit, on.operator.bound))
     change = filtered(on.operator, on.fields, filters, part(progress, 0.3, 0.9))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
@@ -124,7 +137,8 @@ def detail_seen(
         normals[channel] = welded.spread(facing, 0.0)
         shape[channel] = welded.spread(_convex_part(facing, tensors, 1.0 / (unit * size)), 0.0)
     bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
-    return Detail(normals, shape, bare, shares * widths)
+    smooth = welded.spread(smoothed_normals(on.fields, change, len(filters) - 1), 0.0)
+    return Detail(normals, shape, bare, shares * widths, scale, smooth)
 
 
 def _passing(
