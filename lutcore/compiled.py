@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import numba
+from numba.core.runtime import rtsys
 from platformdirs import user_cache_path
 
 from lutcore import compiling
@@ -108,17 +109,30 @@ def _keep_going(cache: Any) -> None:
     cache.save_overload = attempt
 
 
-def _tell_when_missing(cache: Any) -> None:
-    """Say when machine code is not in the cache and has to be made."""
-    load = cache.load_overload
+def _load_lightly(dispatcher: Any) -> None:
+    """Take kept machine code without getting ready to compile; say when it has to be made.
+
+    Numba gets ready first: it imports all that it knows how to compile, SciPy's linear algebra and
+    other packages' extensions too, a quarter of a second in each process. Code that is there needs
+    nothing of it but the memory manager.
+    """
+    cache, getting_ready = dispatcher._cache, dispatcher._compilation_chain_init_hook
 
     def attempt(signature: Any, context: Any) -> Any:
-        found = load(signature, context)
+        rtsys.initialize(context)
+        with cache._guard_against_spurious_io_errors():
+            found = cache._load_overload(signature, context)
         if found is None:
             compiling.tell()
+            getting_ready()  # and the compiler does the rest itself
         return found
 
     cache.load_overload = attempt
+    dispatcher._compilation_chain_init_hook = _nothing
+
+
+def _nothing() -> None:
+    """Be called."""
 
 
 def _pack(dispatcher: Any) -> None:
@@ -164,7 +178,7 @@ def compiled(*, parallel: bool = False, packed: bool = False) -> Callable[[F], F
                 jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
                 dispatcher = jit(function)
                 _keep_going(dispatcher._cache)
-                _tell_when_missing(dispatcher._cache)
+                _load_lightly(dispatcher)
                 if packed:
                     _pack(dispatcher)
                 return dispatcher

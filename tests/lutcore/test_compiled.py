@@ -80,3 +80,27 @@ def test_the_user_is_told_once_when_something_has_to_be_compiled(tmp_path):
         for _ in range(2)
     ]
     assert said == [["compiling"], []]
+
+
+def test_kept_code_is_loaded_without_what_compiles_and_more_can_be_compiled_after(tmp_path):
+    code = (
+        "import sys, lutcore.topology, numpy;"
+        "rows = numpy.array([[0, 2], [1, 2]]);"
+        "found = [lutcore.topology.components(rows, 4)[0]];"
+        "compilers = 'numba.np.arraymath', 'scipy.linalg';"
+        "print(any(name in sys.modules for name in compilers));"
+        "kinds = numpy.int16, numpy.int8;"
+        "found += [lutcore.topology.components(rows.astype(kind), 4)[0] for kind in kinds];"
+        "print(*found)"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code.replace("int8", kind)],
+            env={**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for kind in ("int16", "int8")
+    ]
+    assert said == [["True", *"222"], ["False", *"222"]]
