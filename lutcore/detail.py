@@ -115,10 +115,10 @@ def detail_seen(
     constants = [glowing(channel) for channel in optics(substance)]
     widths = lengths * [np.sqrt(0.5 * spreading.mean_square(channel)) for channel in constants]
     count = len(mesh.vertices)
-    normals, shape = np.zeros((3, count, 3)), np.zeros((3, count, 6))
     glow = bake(substance, profile=spreading).glow / size
     if welded.mesh is None:
-        return Detail(normals, shape, np.zeros((count, 3)), widths, glow, np.zeros((count, 3)))
+        none, flat = np.zeros((3, count, 3)), np.zeros((3, count, 6))
+        return Detail(none, flat, none[0], widths, glow, none[0])
     extent = welded.mesh.diagonal
     shares = np.minimum(1.0, _WIDEST * extent / widths)
     sized, unit = sized_to_one(welded.mesh)
@@ -131,6 +131,7 @@ def detail_seen(
     scale = scale_between(glow, extent, on.spacing * unit)
     filters.append(series_at(scale / unit, on.operator.bound))
     change = filtered(on.operator, on.fields, filters, part(progress, 0.3, 0.9))
+    normals, shape = np.empty((3, count, 3)), np.empty((3, count, 6))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
         facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
@@ -156,10 +157,10 @@ def _passing(
 def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]:
     """Return the normals after the first change, and the shape operators after the second."""
     links = (on.operator.start, on.operator.neighbour)
-    normals, every, stretch = shape_operators(*links, on.fields, change, 0, on.spacing)
-    tensors = every[:, 2].astype(np.float64)
+    normals, fitted, stretch = shape_operators(*links, on.fields, change, 0, on.spacing, 2)
+    tensors = fitted[:, 0].astype(np.float64)
     # Half a star, or one that has closed, tells less than its neighbours.
-    weak = np.flatnonzero(on.operator.rim | (stretch[:, 2] < _CLOSED)).astype(np.int32)
+    weak = np.flatnonzero(on.operator.rim | (stretch[:, 0] < _CLOSED)).astype(np.int32)
     told = np.ones(len(weak), np.bool_)
     borrow(*links, normals, weak, told, tensors, np.ones(len(tensors)))
     return normals, tensors
@@ -176,8 +177,12 @@ def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> Flo
         # S+ = low 1 + (high - low)/(2 radius) (S - (middle - radius) 1)
         turned = 0.5 * (high - low) / radius if radius > 0.0 else 0.0
         even = low - turned * (middle - radius)
-        convex = np.array([even + turned * xx, turned * xy, even + turned * yy])
-        sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], per_mm * convex)
+        convex = (
+            per_mm * (even + turned * xx),
+            per_mm * (turned * xy),
+            per_mm * (even + turned * yy),
+        )
+        sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], convex)
         shape[i, 0], shape[i, 1], shape[i, 2] = sxx, syy, szz
         shape[i, 3], shape[i, 4], shape[i, 5] = sxy, syz, sxz
     return shape
