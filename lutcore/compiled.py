@@ -5,13 +5,8 @@ leave old machine code in use. The cache folder is therefore named by a digest o
 that compiles anything.
 """
 
-import hashlib
 import os
-import shutil
-import stat
-import tempfile
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -23,39 +18,11 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import numba
 from numba.core.runtime import rtsys
-from platformdirs import user_cache_path
 
-from lutcore import compiling
+from lutcore import cache, compiling
+from lutcore.cache import sources
 
 F = TypeVar("F", bound=Callable[..., Any])
-_STALE_AFTER = 30 * 24 * 3600.0
-
-
-def _digest() -> str:
-    root = Path(__file__).parent.parent
-    hasher = hashlib.sha256(numba.__version__.encode())
-    for package in ("lutcore", "plugins"):
-        for path in sorted((root / package).rglob("*.py")):
-            source = path.read_bytes()
-            if b"lutcore.compiled" in source:
-                hasher.update(source)
-    return hasher.hexdigest()[:16]
-
-
-def _writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
-
-
-def _remove_stale(folder: Path) -> None:
-    for old in folder.parent.iterdir():
-        with suppress(OSError):  # another process may have removed it first
-            if old != folder and time.time() - old.stat().st_mtime > _STALE_AFTER:
-                shutil.rmtree(old, ignore_errors=True)
 
 
 def cache_folder() -> Path:
@@ -64,34 +31,9 @@ def cache_folder() -> Path:
     Returns
     -------
     Path
-        Inside ``CURVELIGHT_CACHE_DIR`` or the user's cache folder where that can be written,
-        else inside the folder for temporary files.
+        See `lutcore.cache.folder`.
     """
-    chosen = os.environ.get("CURVELIGHT_CACHE_DIR")
-    base = Path(chosen) if chosen else user_cache_path("curvelight")
-    folder = base / "compiled" / _digest()
-    if not folder.is_dir() and _writable(folder):
-        _remove_stale(folder)
-    if not _writable(folder):
-        folder = _private_folder() / _digest()
-        folder.mkdir(exist_ok=True)
-    return folder
-
-
-def _private_folder() -> Path:
-    """Return a folder among the temporary files that nobody else can write to.
-
-    Compiled code is loaded from it, so one that another user made or may change is not taken.
-    """
-    if not hasattr(os, "getuid"):
-        return Path(tempfile.mkdtemp(prefix="curvelight-"))  # Windows: already the user's own
-    folder = Path(tempfile.gettempdir()) / f"curvelight-{os.getuid()}"
-    with suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    if found.st_uid != os.getuid() or found.st_mode & 0o022 or not stat.S_ISDIR(found.st_mode):
-        return Path(tempfile.mkdtemp(prefix="curvelight-"))
-    return folder
+    return cache.folder("compiled", sources().compiled, numba.__version__)
 
 
 _FOLDER = str(cache_folder())

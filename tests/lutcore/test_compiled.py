@@ -4,7 +4,7 @@ import sys
 
 import numba
 
-from lutcore import compiled
+from lutcore import cache, compiled
 from lutcore.compiled import cache_folder
 
 
@@ -16,7 +16,7 @@ def test_the_cache_goes_where_it_is_told(tmp_path, monkeypatch):
 def test_a_cache_that_cannot_be_written_goes_to_the_temporary_folder(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("CURVELIGHT_CACHE_DIR", str(tmp_path / "file" / "below"))
-    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(cache.tempfile, "gettempdir", lambda: str(tmp_path))
     folder = cache_folder()
     assert folder.is_dir()
     assert folder.is_relative_to(tmp_path)
@@ -27,7 +27,7 @@ def test_old_caches_are_removed_and_recent_ones_kept(tmp_path, monkeypatch):
     old, recent = tmp_path / "compiled" / "old", tmp_path / "compiled" / "recent"
     old.mkdir(parents=True)
     recent.mkdir()
-    compiled.os.utime(old, (0.0, 0.0))
+    cache.os.utime(old, (0.0, 0.0))
     cache_folder()
     assert not old.exists()
     assert recent.exists()
