@@ -136,7 +136,11 @@ def detail_seen(
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
         facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
         normals[channel] = welded.spread(facing, 0.0)
-        shape[channel] = welded.spread(_convex_part(facing, tensors, 1.0 / (unit * size)), 0.0)
+        # Straight to its place where it can be: memory that is touched first costs most here.
+        part_of = np.empty((len(facing), 6)) if welded.moved else shape[channel]
+        _convex_part(facing, tensors, 1.0 / (unit * size), part_of)
+        if welded.moved:
+            shape[channel] = welded.spread(part_of, 0.0)
     bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
     smooth = welded.spread(smoothed_normals(on.fields, change, len(filters) - 1), 0.0)
     return Detail(normals, shape, bare, shares * widths, scale, smooth)
@@ -167,9 +171,10 @@ def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]
 
 
 @compiled(parallel=True)
-def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> FloatArray:
-    """Return S+ from tensors in the `tangent_frame` of the normals."""
-    shape = np.empty((len(normals), 6))
+def _convex_part(
+    normals: FloatArray, tensors: FloatArray, per_mm: float, shape: FloatArray
+) -> None:
+    """Write S+ from tensors in the `tangent_frame` of the normals."""
     for i in prange(len(normals)):
         xx, xy, yy = tensors[i, 0], tensors[i, 1], tensors[i, 2]
         middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
@@ -185,4 +190,3 @@ def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> Flo
         sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], convex)
         shape[i, 0], shape[i, 1], shape[i, 2] = sxx, syy, szz
         shape[i, 3], shape[i, 4], shape[i, 5] = sxy, syz, sxz
-    return shape
