@@ -136,7 +136,6 @@ class CurvelightAccessor:
         from lutcore.detail import detail_seen
         from lutcore.estimation import principal_curvatures
         from lutcore.parameters import create
-        from lutcore.scale import shading_scale
         from lutcore.shading import AUTO, exitance, model_registry, shading_inputs
 
         if shadows not in get_args(Shadows):
@@ -149,8 +148,8 @@ class CurvelightAccessor:
         table = bake(material, profile=profile)
         detail = None
         if scale is None and method == "auto":
-            scale = shading_scale(mesh, table.glow / per_unit)
             detail = detail_seen(mesh, material, per_unit, profile=profile)
+            scale = detail.scale
         curvatures = principal_curvatures(mesh, method, scale)
         chosen = _default_lights() if lights is None else lights
         if model == AUTO:

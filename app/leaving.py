@@ -37,9 +37,9 @@ def leaving(
         The exit Fresnel factor (Kolchin 2007, eq. 6) times the albedo, where there is one.
     """
     subject = pipeline.subject(session)
-    normals = pipeline.curvatures(session).normals
+    normals = pipeline.facing(session)
     eta = pipeline.material(session).eta
-    # Curvatures are kept too, so an array that is the same object has the same content.
+    # Normals are kept too, so an array that is the same object has the same content.
     key = ("leaving", subject.key, id(normals), eta, camera, session.albedo, textured)
 
     def compute() -> tuple[FloatArray, FloatArray]:

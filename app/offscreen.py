@@ -50,6 +50,8 @@ def offscreen_window(size: tuple[int, int], samples: int) -> "Iterator[vtkRender
             window = vtkRenderWindow()
         window.SetOffScreenRendering(1)
         window.SetMultiSamples(samples)
+        # Nobody looks at it: what is read is joined from its samples then, and not before too.
+        window.SwapBuffersOff()
         for room in _kept:
             room.append(window)
     window.SetSize(*size)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from msgspec.structs import replace
-from numpy.typing import NDArray
 
 from app import camera as cameras
 from app.backend import Backend
@@ -24,7 +23,6 @@ from app.shown import names_shown, shown
 from app.texturing import Coat
 from lutcore.arrays import FloatArray
 from lutcore.color import auto_exposure, product_bytes
-from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import ParameterError
 from lutcore.shading import AUTO
 
@@ -257,7 +255,8 @@ class _Studio:
             self.exposure = auto_exposure(self._linear(model))
         light = self.pipeline.exitance(self.session, model, self.axes)
         rgb = product_bytes(light, self._leaving(), self.exposure)
-        surface = self._surface(rgb=rgb, caption=caption)
+        facing = self.pipeline.facing(self.session)
+        surface = Surface(self.subject.mesh, facing, rgb, caption=caption)
         texture = self.subject.loaded.texture
         if texture is None or not self.session.albedo:
             return surface
@@ -278,9 +277,6 @@ class _Studio:
     def _leaving(self, textured: bool = True) -> FloatArray:
         return leaving(self.session, self.pipeline, self.camera, textured)
 
-    def _curvatures(self) -> PrincipalCurvatures:
-        return self.pipeline.curvatures(self.session)
-
     def _curvature(self, name: str) -> list[Panel]:
         found = shown(self.session, self.pipeline, name)
         self.ranges[name] = found.low, found.high
@@ -296,10 +292,15 @@ class _Studio:
         scale = ColorScale(colors, found.low, found.high, title)
         # Infinite errors are drawn at the end of the scale.
         values = np.nan_to_num(found.values, posinf=found.high)
-        surface = dataclasses.replace(
-            self._surface(values=values, scale=scale, caption=caption),
-            rgb=faded(values, scale, self._curvatures()) if self.session.fade else None,
+        measured = self.pipeline.curvatures(self.session)
+        surface = Surface(
+            self.subject.mesh,
+            measured.normals,
+            rgb=faded(values, scale, measured) if self.session.fade else None,
+            values=values,
+            scale=scale,
             lit=not self.session.flat,
+            caption=caption,
             strokes=strokes,
         )
         return [Panel(surface, self.width, self.camera), Panel(scale, self.bar_share)]
@@ -341,19 +342,8 @@ class _Studio:
             assert isinstance(surface, Surface)
             said = f"{label} ({surface.caption})" if surface.caption else label
             surface = dataclasses.replace(surface, caption=said)
-            singles.append(Single(surface, studio._curvatures().estimated))
+            singles.append(Single(surface, self.pipeline.curvatures(studio.session).estimated))
         return singles
 
     def _studio(self, session: Session) -> "_Studio":
         return _Studio(replace(session, camera=self.camera), self.pipeline)
-
-    def _surface(
-        self,
-        *,
-        rgb: NDArray[np.uint8] | None = None,
-        values: FloatArray | None = None,
-        scale: ColorScale | None = None,
-        caption: str = "",
-    ) -> Surface:
-        normals = self._curvatures().normals
-        return Surface(self.subject.mesh, normals, rgb, values, scale, caption=caption)

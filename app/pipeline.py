@@ -178,11 +178,40 @@ class Pipeline:
             lambda: self._estimate(session, self.progress),
         )
         if not found.estimated.any():
-            raise MeshError(
-                f"{session.mesh}: none of its {len(self.subject(session).mesh.faces)} "
-                "faces has an area, so there is no surface; choose another file"
-            )
+            raise self._no_surface(session)
         return found
+
+    def facing(self, session: Session) -> FloatArray:
+        """Return the normals of a session that shades, for all that has no channels.
+
+        Parameters
+        ----------
+        session : Session
+            As for `curvatures`, whose normals they are: less is computed where only they are
+            needed.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            Outward unit normals; zero where a vertex has no face.
+
+        Raises
+        ------
+        MeshError
+            If no face has an area.
+        """
+        seen = self.detail(session)
+        if seen is None or session.view == "curvature":
+            return self.curvatures(session).normals
+        if not seen.smooth.any():
+            raise self._no_surface(session)
+        return seen.smooth
+
+    def _no_surface(self, session: Session) -> MeshError:
+        return MeshError(
+            f"{session.mesh}: none of its {len(self.subject(session).mesh.faces)} "
+            "faces has an area, so there is no surface; choose another file"
+        )
 
     def consult(self, session: Session) -> "Consultation":
         """Return how far the session's `peers` are apart.
@@ -269,13 +298,8 @@ class Pipeline:
         """
         if session.scale is not None or session.estimator.name != "auto":
             return session.scale
-        if session.view == "curvature":
-            return None
-        from lutcore.scale import shading_scale
-
-        subject = self.subject(session)
-        glow = self.glow(session)
-        return self.once(("scale", subject.key, glow), lambda: shading_scale(subject.mesh, glow))
+        seen = None if session.view == "curvature" else self.detail(session)
+        return None if seen is None else seen.scale
 
     def glow(self, session: Session) -> float:
         """Return how far light carries the edge of a shadow, in the channel where it is most.
@@ -383,7 +407,8 @@ class Pipeline:
         from lutcore.shading import exitance
 
         settled = self.settled(session, model, axes)
-        inputs = self.inputs(session, axes)
+        curved = settled.curved or not settled.local
+        inputs = self.inputs(session, axes, curved)
         shares = self.visibility(session, settled.local, world_lights(session, axes))
         if not settled.local or len(inputs.lights) == 0:
             return exitance(settled, replace(inputs, visibility=shares))
@@ -438,7 +463,7 @@ class Pipeline:
         key = ("settled", *self._scene_key(session, model, axes))
         return self.once(key, lambda: chosen.settled(self.inputs(session, axes)))
 
-    def inputs(self, session: Session, axes: FloatArray) -> "ShadingInputs":
+    def inputs(self, session: Session, axes: FloatArray, curved: bool = True) -> "ShadingInputs":
         """Return what shading models get, without cast shadows.
 
         Parameters
@@ -447,6 +472,9 @@ class Pipeline:
             Everything but its model and shadows is used.
         axes : ndarray, shape=(3, 3)
             The camera's axes, for lights that move with it.
+        curved : bool
+            Whether with curvature at one scale, for predictions and for models that say so, also
+            where `detail` says what each channel sees.
 
         Returns
         -------
@@ -458,16 +486,19 @@ class Pipeline:
         from lutcore.lights import pack
         from lutcore.shading import shading_inputs
 
+        seen = self.detail(session)
+        curved = curved or seen is None
         unlit = self.once(
-            ("inputs", *self._surface_key(session)),
+            ("inputs", curved, *self._surface_key(session)),
             lambda: shading_inputs(
                 self.subject(session).mesh,
-                self.curvatures(session),
+                self.curvatures(session) if curved else None,
                 self.material(session),
                 (),
                 self.mm_per_unit(session),
                 profile=self.profile(session),
-                detail=self.detail(session),
+                normals=None if curved else self.facing(session),
+                detail=seen,
             ),
         )
         return replace(unlit, lights=pack(world_lights(session, axes)), progress=self.progress)
@@ -530,7 +561,7 @@ class Pipeline:
         subject = self.subject(session)
         packed = pack(lights)
         if session.shadows == "auto":
-            normals = self.curvatures(session).normals
+            normals = self.facing(session)
             if not forecast(subject.mesh, normals, packed).needed:
                 return None
         key = ("visibility", subject.key, packed.tobytes())

@@ -1,13 +1,13 @@
 """Tables made from a material and a diffusion profile."""
 
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
+from lutcore.keeping import kept
 from lutcore.lut import PsiTable
 from lutcore.materials import Material
 from lutcore.materials import material as built_in
@@ -170,7 +170,7 @@ def whole(name: str, value: int, low: int, high: int) -> int:
     return int(value)
 
 
-@lru_cache(maxsize=256)
+@kept
 def _bake(material: Material, samples: int, profile: DiffusionProfile) -> PsiTable:
     psi, slope = np.empty((3, samples)), np.empty((3, samples))
     reach, total, mean_square = np.empty(3), np.empty(3), np.empty(3)

@@ -1,7 +1,7 @@
 """Two models on one surface: the cheaper where it suffices, without a seam."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,8 @@ class Blend(ShadingModel):
     limit : float
         Relative error at which `cheap` is no longer used; see `lutcore.tolerance.relative`.
     """
+
+    curved: ClassVar[bool] = True
 
     cheap: ShadingModel
     good: ShadingModel

@@ -17,7 +17,6 @@ _WIDER = 4.0
 _STARS = 20_000
 
 
-@compiled()
 def borrow(
     start: IndexArray,
     neighbour: IndexArray,
@@ -54,9 +53,28 @@ def borrow(
         Squared error that each of them counts with in its own favour: `square`, or more.
     """
     number = np.full(len(normals), -1, np.int32)
-    for w in range(len(weak)):
-        number[weak[w]] = w
-    step = _WIDER * _step(start, neighbour, normals, number, tensors, np.median(square))
+    number[weak] = np.arange(len(weak), dtype=np.int32)
+    links = start, neighbour
+    # The median is NumPy's: numba's own brings a quarter of a second of imports along.
+    found = _differences(*links, normals, number, tensors)
+    step = _WIDER * max(float(np.median(found if len(found) else square)), 1e-30)
+    _join(*links, normals, number, weak, closed, step, tensors, square, doubt)
+
+
+@compiled()
+def _join(
+    start: IndexArray,
+    neighbour: IndexArray,
+    normals: FloatArray,
+    number: IndexArray,
+    weak: IndexArray,
+    closed: BoolArray,
+    step: float,
+    tensors: FloatArray,
+    square: FloatArray,
+    doubt: FloatArray,
+) -> None:
+    """Iterate, with each vertex's place in `weak` or -1, and how much neighbours differ."""
     measured = np.empty((len(weak), 6))
     certainty = np.zeros(len(weak))
     now = np.empty((len(weak), 7))
@@ -176,18 +194,14 @@ def _outwards(
 
 
 @compiled()
-def _step(
+def _differences(
     start: IndexArray,
     neighbour: IndexArray,
     normals: FloatArray,
     number: IndexArray,
     tensors: FloatArray,
-    otherwise: float,
-) -> float:
-    """Return the typical squared difference of two neighbours that are not weak.
-
-    Where all are weak, `otherwise`.
-    """
+) -> FloatArray:
+    """Return mean squared differences of vertices that are not weak from such neighbours."""
     every = 1 + len(normals) // _STARS
     found = np.empty(len(normals) // every + 1)
     count = 0
@@ -206,4 +220,4 @@ def _step(
         if pairs > 0:
             found[count] = total / pairs
             count += 1
-    return max(np.median(found[:count]), 1e-30) if count > 0 else max(otherwise, 1e-30)
+    return found[:count]

@@ -5,13 +5,8 @@ leave old machine code in use. The cache folder is therefore named by a digest o
 that compiles anything.
 """
 
-import hashlib
 import os
-import shutil
-import stat
-import tempfile
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -22,39 +17,12 @@ from typing import Any, TypeVar
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import numba
-from platformdirs import user_cache_path
+from numba.core.runtime import rtsys
 
-from lutcore import compiling
+from lutcore import cache, compiling
+from lutcore.cache import sources
 
 F = TypeVar("F", bound=Callable[..., Any])
-_STALE_AFTER = 30 * 24 * 3600.0
-
-
-def _digest() -> str:
-    root = Path(__file__).parent.parent
-    hasher = hashlib.sha256(numba.__version__.encode())
-    for package in ("lutcore", "plugins"):
-        for path in sorted((root / package).rglob("*.py")):
-            source = path.read_bytes()
-            if b"lutcore.compiled" in source:
-                hasher.update(source)
-    return hasher.hexdigest()[:16]
-
-
-def _writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
-
-
-def _remove_stale(folder: Path) -> None:
-    for old in folder.parent.iterdir():
-        with suppress(OSError):  # another process may have removed it first
-            if old != folder and time.time() - old.stat().st_mtime > _STALE_AFTER:
-                shutil.rmtree(old, ignore_errors=True)
 
 
 def cache_folder() -> Path:
@@ -63,34 +31,9 @@ def cache_folder() -> Path:
     Returns
     -------
     Path
-        Inside ``CURVELIGHT_CACHE_DIR`` or the user's cache folder where that can be written,
-        else inside the folder for temporary files.
+        See `lutcore.cache.folder`.
     """
-    chosen = os.environ.get("CURVELIGHT_CACHE_DIR")
-    base = Path(chosen) if chosen else user_cache_path("curvelight")
-    folder = base / "compiled" / _digest()
-    if not folder.is_dir() and _writable(folder):
-        _remove_stale(folder)
-    if not _writable(folder):
-        folder = _private_folder() / _digest()
-        folder.mkdir(exist_ok=True)
-    return folder
-
-
-def _private_folder() -> Path:
-    """Return a folder among the temporary files that nobody else can write to.
-
-    Compiled code is loaded from it, so one that another user made or may change is not taken.
-    """
-    if not hasattr(os, "getuid"):
-        return Path(tempfile.mkdtemp(prefix="curvelight-"))  # Windows: already the user's own
-    folder = Path(tempfile.gettempdir()) / f"curvelight-{os.getuid()}"
-    with suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    if found.st_uid != os.getuid() or found.st_mode & 0o022 or not stat.S_ISDIR(found.st_mode):
-        return Path(tempfile.mkdtemp(prefix="curvelight-"))
-    return folder
+    return cache.folder("compiled", sources().compiled, numba.__version__)
 
 
 _FOLDER = str(cache_folder())
@@ -108,17 +51,30 @@ def _keep_going(cache: Any) -> None:
     cache.save_overload = attempt
 
 
-def _tell_when_missing(cache: Any) -> None:
-    """Say when machine code is not in the cache and has to be made."""
-    load = cache.load_overload
+def _load_lightly(dispatcher: Any) -> None:
+    """Take kept machine code without getting ready to compile; say when it has to be made.
+
+    Numba gets ready first: it imports all that it knows how to compile, SciPy's linear algebra and
+    other packages' extensions too, a quarter of a second in each process. Code that is there needs
+    nothing of it but the memory manager.
+    """
+    cache, getting_ready = dispatcher._cache, dispatcher._compilation_chain_init_hook
 
     def attempt(signature: Any, context: Any) -> Any:
-        found = load(signature, context)
+        rtsys.initialize(context)
+        with cache._guard_against_spurious_io_errors():
+            found = cache._load_overload(signature, context)
         if found is None:
             compiling.tell()
+            getting_ready()  # and the compiler does the rest itself
         return found
 
     cache.load_overload = attempt
+    dispatcher._compilation_chain_init_hook = _nothing
+
+
+def _nothing() -> None:
+    """Be called."""
 
 
 def _pack(dispatcher: Any) -> None:
@@ -164,7 +120,7 @@ def compiled(*, parallel: bool = False, packed: bool = False) -> Callable[[F], F
                 jit = numba.njit(cache=True, parallel=parallel, error_model="numpy", nogil=True)
                 dispatcher = jit(function)
                 _keep_going(dispatcher._cache)
-                _tell_when_missing(dispatcher._cache)
+                _load_lightly(dispatcher)
                 if packed:
                     _pack(dispatcher)
                 return dispatcher

@@ -19,7 +19,7 @@ from lutcore.lowpass import SingleArray, low_pass
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
 from lutcore.stars import stars
-from lutcore.tensors import symmetric_fit, tangent_frame
+from lutcore.tensors import Vector, symmetric_fit, tangent_frame
 
 # A star narrower than this, in spacings, is a point to single precision.
 _POINT = 1e-4
@@ -131,6 +131,42 @@ def smooth(
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
 
+@compiled()
+def _normal(fields: FloatArray, change: SingleArray, base: int, i: int) -> Vector:
+    """Return the unit normal of a vertex after one of the smoothings."""
+    nx = fields[i, 3] + change[base, i, 3]
+    ny = fields[i, 4] + change[base, i, 4]
+    nz = fields[i, 5] + change[base, i, 5]
+    length = np.sqrt(nx * nx + ny * ny + nz * nz)
+    if length < 0.1:  # smoothed over a closed blob: no side is outside any more
+        nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
+    return nx / length, ny / length, nz / length
+
+
+@compiled(parallel=True)
+def smoothed_normals(fields: FloatArray, change: SingleArray, base: int) -> FloatArray:
+    """Return the normals after one smoothing, where nothing else of it is wanted.
+
+    Parameters
+    ----------
+    fields : ndarray, shape=(n, 6)
+        `Surface.fields`.
+    change : ndarray of float32, shape=(S, n, 6)
+        How far each smoothing moves them; see `lutcore.lowpass`.
+    base : int
+        Which of them.
+
+    Returns
+    -------
+    ndarray, shape=(n, 3)
+        Unit normals, to the last bit those of `shape_operators`.
+    """
+    normals = np.empty((len(fields), 3))
+    for i in prange(len(fields)):
+        normals[i, 0], normals[i, 1], normals[i, 2] = _normal(fields, change, base, i)
+    return normals
+
+
 @compiled(parallel=True, packed=True)
 def shape_operators(
     start: IndexArray,
@@ -139,6 +175,7 @@ def shape_operators(
     change: SingleArray,
     base: int,
     spacing: float,
+    first: int = 0,
 ) -> tuple[FloatArray, SingleArray, SingleArray]:
     """Fit the shape operators of all stars, unsmoothed and after each smoothing.
 
@@ -154,30 +191,27 @@ def shape_operators(
         Which of them gives the normals.
     spacing : float
         `Surface.spacing`.
+    first : int
+        The smoothing to begin with; 0 is none.
 
     Returns
     -------
     tuple of ndarray
-        `Smoothed.normals`, and `tensors` and `stretch` of 1 + S smoothings, the first none.
+        `Smoothed.normals`, and `tensors` and `stretch` of the smoothings from `first` to S.
     """
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
     normals = np.empty((count, 3))
-    tensors = np.empty((count, scales + 1, 3), np.float32)
-    stretch = np.empty((count, scales + 1), np.float32)
+    tensors = np.empty((count, scales + 1 - first, 3), np.float32)
+    stretch = np.empty((count, scales + 1 - first), np.float32)
     for i in prange(count):
-        nx = fields[i, 3] + change[base, i, 3]
-        ny = fields[i, 4] + change[base, i, 4]
-        nz = fields[i, 5] + change[base, i, 5]
-        length = np.sqrt(nx * nx + ny * ny + nz * nz)
-        if length < 0.1:  # smoothed over a closed blob: no side is outside any more
-            nx, ny, nz, length = fields[i, 3], fields[i, 4], fields[i, 5], 1.0
-        n = (nx / length, ny / length, nz / length)
+        n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n
         u, v = tangent_frame(n[0], n[1], n[2])
-        open_before = 1.0
-        for scale in range(scales + 1):
+        cxx, cxy, cyy = _extent(start, neighbour, fields, i, u, v, unit, near)
+        open_before = max(_least(cxx, cxy, cyy), 1e-12 * (cxx + cyy))
+        for scale in range(first, scales + 1):
             cxx = cxy = cyy = bxx = bxy = byy = 0.0
             for at in range(start[i], start[i + 1]):
                 j = neighbour[at]
@@ -196,13 +230,44 @@ def shape_operators(
                 pu, pv = weight * xu, weight * xv
                 cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
                 bxx, bxy, byy = bxx + nu * pu, bxy + 0.5 * (nu * pv + nv * pu), byy + nv * pv
-            least = 0.5 * (cxx + cyy) - np.hypot(0.5 * (cxx - cyy), cxy)
-            if scale == 0:
-                open_before = max(least, 1e-12 * (cxx + cyy))
-            stretch[i, scale] = np.sqrt(max(least, 0.0) / open_before)
+            to = scale - first
+            stretch[i, to] = np.sqrt(max(_least(cxx, cxy, cyy), 0.0) / open_before)
             if cxx + cyy < point:
-                stretch[i, scale] = 0.0
+                stretch[i, to] = 0.0
                 cxx = cxy = cyy = 0.0
             s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)
-            tensors[i, scale, 0], tensors[i, scale, 1], tensors[i, scale, 2] = s
+            tensors[i, to, 0], tensors[i, to, 1], tensors[i, to, 2] = s
     return normals, tensors, stretch
+
+
+@compiled()
+def _extent(
+    start: IndexArray,
+    neighbour: IndexArray,
+    fields: FloatArray,
+    i: int,
+    u: Vector,
+    v: Vector,
+    unit: float,
+    near: float,
+) -> Vector:
+    """Return entries xx, xy, yy of the weighted sum of dx dx^T over an unsmoothed star."""
+    cxx = cxy = cyy = 0.0
+    for at in range(start[i], start[i + 1]):
+        j = neighbour[at]
+        xu = xv = 0.0
+        weight = near
+        for axis in range(3):
+            dx = fields[j, axis] - fields[i, axis]
+            weight += dx * dx
+            xu, xv = xu + dx * u[axis], xv + dx * v[axis]
+        weight = unit / weight
+        pu, pv = weight * xu, weight * xv
+        cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
+    return cxx, cxy, cyy
+
+
+@compiled()
+def _least(xx: float, xy: float, yy: float) -> float:
+    """Return the smaller eigenvalue of a symmetric tensor."""
+    return 0.5 * (xx + yy) - np.hypot(0.5 * (xx - yy), xy)

@@ -1,7 +1,8 @@
 """A surface as light sees it that spreads below it: without the bumps that it blurs.
 
 Each channel has its own normals and curvature, filtered by its own diffusion profile, all from one
-recurrence. The filters are those of `lutcore.response`.
+recurrence. The filters are those of `lutcore.response`. What has no channels gets its normals from
+the same recurrence.
 """
 
 from collections.abc import Callable
@@ -12,18 +13,19 @@ from numba import prange
 
 from lutcore.arrangement import arranged
 from lutcore.arrays import FloatArray, finite
-from lutcore.baking import glowing, resolved
+from lutcore.baking import bake, glowing, resolved
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
-from lutcore.cosmoothing import Surface, shape_operators, surface
+from lutcore.cosmoothing import Surface, shape_operators, smoothed_normals, surface
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
 from lutcore.estimation import sized_to_one
-from lutcore.lowpass import SingleArray, filtered, series_of
+from lutcore.lowpass import SingleArray, filtered, series_at, series_of
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
 from lutcore.response import response
+from lutcore.scale import scale_between
 from lutcore.tensors import in_space
 from lutcore.weld import weld
 
@@ -53,12 +55,19 @@ class Detail:
     widths : ndarray, shape=(3,)
         Root mean square distance along an axis that light spreads, mesh units: detail finer than
         this fades.
+    scale : float
+        One scale for what has no channels, mesh units; see `lutcore.scale.shading_scale`.
+    smooth : ndarray, shape=(n, 3)
+        Outward unit normals at that scale, to the last bit those that `auto` gives with its
+        curvature; zero where a vertex has no face.
     """
 
     normals: FloatArray
     shape: FloatArray
     bare: FloatArray
     widths: FloatArray
+    scale: float
+    smooth: FloatArray
 
 
 def detail_seen(
@@ -106,10 +115,12 @@ def detail_seen(
     constants = [glowing(channel) for channel in optics(substance)]
     widths = lengths * [np.sqrt(0.5 * spreading.mean_square(channel)) for channel in constants]
     count = len(mesh.vertices)
-    normals, shape = np.zeros((3, count, 3)), np.zeros((3, count, 6))
+    glow = bake(substance, profile=spreading).glow / size
     if welded.mesh is None:
-        return Detail(normals, shape, np.zeros((count, 3)), widths)
-    shares = np.minimum(1.0, _WIDEST * welded.mesh.diagonal / widths)
+        none, flat = np.zeros((3, count, 3)), np.zeros((3, count, 6))
+        return Detail(none, flat, none[0], widths, glow, none[0])
+    extent = welded.mesh.diagonal
+    shares = np.minimum(1.0, _WIDEST * extent / widths)
     sized, unit = sized_to_one(welded.mesh)
     on = surface(sized, part(progress, 0.0, 0.3))
     filters = [
@@ -117,14 +128,22 @@ def detail_seen(
         for channel, length in zip(constants, shares * lengths / unit, strict=True)
         for passing in _passing(spreading, channel, length)
     ]
+    scale = scale_between(glow, extent, on.spacing * unit)
+    filters.append(series_at(scale / unit, on.operator.bound))
     change = filtered(on.operator, on.fields, filters, part(progress, 0.3, 0.9))
+    normals, shape = np.empty((3, count, 3)), np.empty((3, count, 6))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
         facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
         normals[channel] = welded.spread(facing, 0.0)
-        shape[channel] = welded.spread(_convex_part(facing, tensors, 1.0 / (unit * size)), 0.0)
+        # Straight to its place where it can be: memory that is touched first costs most here.
+        part_of = np.empty((len(facing), 6)) if welded.moved else shape[channel]
+        _convex_part(facing, tensors, 1.0 / (unit * size), part_of)
+        if welded.moved:
+            shape[channel] = welded.spread(part_of, 0.0)
     bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
-    return Detail(normals, shape, bare, shares * widths)
+    smooth = welded.spread(smoothed_normals(on.fields, change, len(filters) - 1), 0.0)
+    return Detail(normals, shape, bare, shares * widths, scale, smooth)
 
 
 def _passing(
@@ -142,10 +161,10 @@ def _passing(
 def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]:
     """Return the normals after the first change, and the shape operators after the second."""
     links = (on.operator.start, on.operator.neighbour)
-    normals, every, stretch = shape_operators(*links, on.fields, change, 0, on.spacing)
-    tensors = every[:, 2].astype(np.float64)
+    normals, fitted, stretch = shape_operators(*links, on.fields, change, 0, on.spacing, 2)
+    tensors = fitted[:, 0].astype(np.float64)
     # Half a star, or one that has closed, tells less than its neighbours.
-    weak = np.flatnonzero(on.operator.rim | (stretch[:, 2] < _CLOSED)).astype(np.int32)
+    weak = np.flatnonzero(on.operator.rim | (stretch[:, 0] < _CLOSED)).astype(np.int32)
     told = np.ones(len(weak), np.bool_)
     even = np.ones(len(tensors))
     borrow(*links, normals, weak, told, tensors, even, even[weak])
@@ -153,9 +172,10 @@ def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]
 
 
 @compiled(parallel=True)
-def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> FloatArray:
-    """Return S+ from tensors in the `tangent_frame` of the normals."""
-    shape = np.empty((len(normals), 6))
+def _convex_part(
+    normals: FloatArray, tensors: FloatArray, per_mm: float, shape: FloatArray
+) -> None:
+    """Write S+ from tensors in the `tangent_frame` of the normals."""
     for i in prange(len(normals)):
         xx, xy, yy = tensors[i, 0], tensors[i, 1], tensors[i, 2]
         middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
@@ -163,8 +183,11 @@ def _convex_part(normals: FloatArray, tensors: FloatArray, per_mm: float) -> Flo
         # S+ = low 1 + (high - low)/(2 radius) (S - (middle - radius) 1)
         turned = 0.5 * (high - low) / radius if radius > 0.0 else 0.0
         even = low - turned * (middle - radius)
-        convex = np.array([even + turned * xx, turned * xy, even + turned * yy])
-        sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], per_mm * convex)
+        convex = (
+            per_mm * (even + turned * xx),
+            per_mm * (turned * xy),
+            per_mm * (even + turned * yy),
+        )
+        sxx, sxy, sxz, syy, syz, szz = in_space(normals[i], convex)
         shape[i, 0], shape[i, 1], shape[i, 2] = sxx, syy, szz
         shape[i, 3], shape[i, 4], shape[i, 5] = sxy, syz, sxz
-    return shape

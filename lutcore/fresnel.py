@@ -13,6 +13,7 @@ import numpy as np
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
+from lutcore.keeping import kept
 
 N = TypeVar("N", float, FloatArray)
 # Gauss-Legendre in the cosine converges to rounding error well before 200 nodes for eta >= 1.01.
@@ -151,7 +152,7 @@ def _ramps(cosine: FloatArray, inner: FloatArray) -> FloatArray:
     return np.maximum(0.0, cosine[:, None] - corners)
 
 
-@lru_cache(maxsize=256)
+@kept
 def hinges(eta: float, count: int) -> Hinges:
     """Fit c F_t(c) by hinges, in least squares over c from 0 to 1.
 

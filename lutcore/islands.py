@@ -23,9 +23,7 @@ def main_islands(mesh: TriangleMesh) -> BoolArray:
     ndarray of bool, shape=(n,)
         True for referenced vertices of every island that is not far smaller than the largest.
     """
-    # Two edges connect a triangle; the third adds nothing.
-    links = mesh.faces[:, [0, 1, 1, 2]].reshape(-1, 2)
-    count, labels = components(links, len(mesh.vertices))
+    count, labels = components(mesh.faces, len(mesh.vertices))
     sizes = np.bincount(labels[mesh.faces[:, 0]], minlength=count)
     large: BoolArray = (sizes > 0) & (sizes >= _DEBRIS * sizes.max())
     return large[labels]

@@ -61,7 +61,7 @@ def low_pass(
     Appl. Comput. Harmon. Anal. 30, 2011 (the recurrence).
     """
     return filtered(
-        operator, fields, [_series(scale, operator.bound) for scale in scales], progress
+        operator, fields, [series_at(scale, operator.bound) for scale in scales], progress
     )
 
 
@@ -81,7 +81,7 @@ def filtered(
         The fields f.
     series : sequence of ndarray
         Of each polynomial, the Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound;
-        see `series_of`.
+        see `series_at` and `series_of`.
     progress : callable
         Told where the work stands.
 
@@ -176,8 +176,21 @@ def _jacobi(degree_: int, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return now, before
 
 
-def _series(scale: float, bound: float) -> FloatArray:
-    """Return the Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound."""
+def series_at(scale: float, bound: float) -> FloatArray:
+    """Return the polynomial of a scale, for `filtered`.
+
+    Parameters
+    ----------
+    scale : float
+        As for `low_pass`, mesh units.
+    bound : float
+        The Laplacian's, 1/mesh unit squared.
+
+    Returns
+    -------
+    ndarray
+        Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound.
+    """
     strength = 0.5 * scale * scale * bound
     k = max(degree(scale, bound), _LEAST_DEGREE)
     # Degrees are whole numbers: a bound that is larger by as much makes the scale exact.

@@ -15,13 +15,13 @@ by which curvature is to be filtered. Even waves of N.w count by half of N(q) th
 at a = 0, and straight slopes pass both: nothing is smoothed twice.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from lutcore.arrays import FloatArray
 from lutcore.diffusion import DiffusionProfile, Optics
+from lutcore.keeping import kept
 
 # The trapezoidal rule in log r is within 8e-4 of N for the dipole and within 3e-5 of T.
 _STEP = 0.01
@@ -48,7 +48,7 @@ class Response(NamedTuple):
     curvature: FloatArray
 
 
-@lru_cache(maxsize=256)
+@kept
 def response(profile: DiffusionProfile, optics: Optics) -> Response:
     """Return what a profile lets through; the same object for the same arguments.
 

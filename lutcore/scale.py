@@ -54,7 +54,25 @@ def shading_scale(mesh: TriangleMesh, glow: float) -> float:
     welded = weld(mesh).mesh
     if welded is None:
         return glow
-    return max(min(glow, _LONGEST * welded.diagonal), _SHADING * typical_spacing(welded))
+    return scale_between(glow, welded.diagonal, typical_spacing(welded))
+
+
+def scale_between(glow: float, extent: float, spacing: float) -> float:
+    """Return `shading_scale` of a mesh of which all that it depends on is known.
+
+    Parameters
+    ----------
+    glow : float
+        As for `shading_scale`.
+    extent, spacing : float
+        Diagonal and typical spacing of the mesh, mesh units.
+
+    Returns
+    -------
+    float
+        The scale, mesh units.
+    """
+    return max(min(glow, _LONGEST * extent), _SHADING * spacing)
 
 
 def rungs(

@@ -45,7 +45,7 @@ class ShadingInputs:
     shape : ndarray, shape=(n, 6)
         Positive (convex) part S+ of the shape operator as a symmetric tensor of the tangent
         plane, 1/mm, in the order xx, yy, zz, xy, yz, xz. Concave curvature is 0, as section 3 of
-        Kolchin 2007 clamps it.
+        Kolchin 2007 clamps it. Not a number where there are no `curvatures`.
     lights : ndarray, shape=(l, LIGHT_FIELDS)
         See `lutcore.lights.pack`.
     material : Material
@@ -95,6 +95,9 @@ class ShadingModel(Parameters, ABC):
 
     local: ClassVar[bool] = True
     """Whether the value at a vertex depends on nothing of the mesh but that vertex."""
+
+    curved: ClassVar[bool] = False
+    """Whether it needs `ShadingInputs.curvatures`, of a local model: others get them anyway."""
 
     growth: ClassVar[str] = "n"
     """How its time grows with the number n of vertices: n (and of lights), n log n or n^2."""
@@ -273,7 +276,7 @@ def shade(
 
 def shading_inputs(
     mesh: TriangleMesh,
-    curvatures: PrincipalCurvatures,
+    curvatures: PrincipalCurvatures | None,
     material: Material | str,
     lights: Sequence[Light],
     mm_per_unit: float = 1.0,
@@ -288,8 +291,10 @@ def shading_inputs(
 
     Parameters
     ----------
-    mesh, curvatures, material, lights, mm_per_unit
+    mesh, material, lights, mm_per_unit
         As for `shade`.
+    curvatures : PrincipalCurvatures or None
+        As for `shade`. A local model that is not `curved` needs none where there is `detail`.
     normals, profile, progress, visibility, detail
         As for `shade`.
 
@@ -313,10 +318,18 @@ def shading_inputs(
         raise ParameterError(
             f"detail is of a mesh with {detail.normals.shape[1]} vertices, not {count}"
         )
+    if curvatures is not None:
+        facing = curvatures.normals if normals is None else normals
+        shape = _shape(curvatures, count, 1.0 / scale)
+    elif detail is None:
+        raise ParameterError("shading needs curvatures or detail; neither is given")
+    else:
+        facing = detail.smooth if normals is None else normals
+        shape = np.broadcast_to(np.nan, (count, 6))
     return ShadingInputs(
         points=mesh.vertices,
-        normals=_normals(curvatures.normals if normals is None else normals, count),
-        shape=_shape(curvatures, count, 1.0 / scale),
+        normals=_normals(facing, count),
+        shape=shape,
         lights=packed,
         material=substance,
         profile=diffusion_profile(profile),

@@ -136,7 +136,7 @@ def write_principal(
 
 @compiled()
 def in_space(
-    normal: FloatArray, tensor: FloatArray
+    normal: FloatArray, tensor: FloatArray | Vector
 ) -> tuple[float, float, float, float, float, float]:
     """Return a tangent tensor as one of space, which can be added to those of other planes.
 
@@ -144,7 +144,7 @@ def in_space(
     ----------
     normal : ndarray, shape=(3,)
         Unit normal.
-    tensor : ndarray, shape=(3,)
+    tensor : ndarray, shape=(3,), or tuple of 3 floats
         Entries xx, xy, yy in its `tangent_frame`.
 
     Returns
@@ -164,7 +164,7 @@ def in_space(
 
 
 @compiled()
-def _entry(tensor: FloatArray, u: Vector, v: Vector, a: int, b: int) -> float:
+def _entry(tensor: FloatArray | Vector, u: Vector, v: Vector, a: int, b: int) -> float:
     return (
         tensor[0] * u[a] * u[b] + tensor[1] * (u[a] * v[b] + v[a] * u[b]) + tensor[2] * v[a] * v[b]
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lutcore.arrays import AnyArray, BoolArray, IndexArray
+from lutcore.compiled import compiled
 
 
 @dataclass(frozen=True)
@@ -85,8 +86,8 @@ def components(links: AnyArray, count: int) -> tuple[int, AnyArray]:
 
     Parameters
     ----------
-    links : ndarray of int, shape=(l, 2)
-        Pairs of things that are linked.
+    links : ndarray of int, shape=(l, w)
+        Each row: things that are linked with one another.
     count : int
         Number of things.
 
@@ -95,15 +96,38 @@ def components(links: AnyArray, count: int) -> tuple[int, AnyArray]:
     int
         Number of groups.
     ndarray of int32, shape=(count,)
-        Group of each thing.
+        Group of each thing; groups are numbered by their first things.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    return _joined(np.ascontiguousarray(links), count)
 
-    ones = np.ones(len(links), dtype=np.int8)
-    graph = coo_array((ones, (links[:, 0], links[:, 1])), shape=(count, count))
-    groups, label = connected_components(graph, directed=False)
-    return int(groups), label
+
+@compiled()
+def _joined(links: AnyArray, count: int) -> tuple[int, IndexArray]:
+    # Union-find: the first of a group stands for it, and ways to it are halved as they are walked.
+    above = np.arange(count, dtype=np.int32)
+    for row in range(len(links)):
+        one = links[row, 0]
+        while above[one] != one:
+            above[one] = above[above[one]]
+            one = above[one]
+        for column in range(1, links.shape[1]):
+            other = links[row, column]
+            while above[other] != other:
+                above[other] = above[above[other]]
+                other = above[other]
+            if other < one:
+                above[one] = other
+                one = other
+            else:
+                above[other] = one
+    groups = 0
+    for thing in range(count):
+        if above[thing] == thing:
+            above[thing] = groups
+            groups += 1
+        else:  # what stands above comes first, and has its number already
+            above[thing] = above[above[thing]]
+    return groups, above
 
 
 def nonmanifold_vertices(faces: IndexArray, table: Edges, vertex_count: int) -> int:

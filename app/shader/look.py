@@ -157,7 +157,7 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
     if seen is None:
         attributes["facing0"] = _single(inputs.normals)
     else:
-        attributes["leaving"] = _single(pipeline.curvatures(session).normals)
+        attributes["leaving"] = _single(pipeline.facing(session))
         attributes |= {f"facing{c}": _single(seen.normals[c]) for c in range(3)}
     if bent:
         for channel, shape in enumerate((inputs.shape,) if seen is None else seen.shape):

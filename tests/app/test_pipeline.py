@@ -29,6 +29,26 @@ def changed(**fields):
     return replace(TORUS, **fields)
 
 
+def test_a_picture_needs_no_curvature_at_one_scale_where_each_channel_has_its_own(monkeypatch):
+    session = changed(estimator=Method("auto"))
+    whole = Pipeline()
+    bent = whole.inputs(session, AXES)
+    expected = whole.facing(session)
+    np.testing.assert_array_equal(expected, whole.curvatures(session).normals)
+    pipeline = Pipeline()
+    monkeypatch.setattr(pipeline, "curvatures", None)
+    np.testing.assert_array_equal(pipeline.facing(session), expected)
+    np.testing.assert_array_equal(pipeline.inputs(session, AXES, False).normals, bent.normals)
+    light = pipeline.exitance(session, session.model, AXES)
+    np.testing.assert_array_equal(light, whole.exitance(session, session.model, AXES))
+
+
+def test_normals_at_a_scale_that_is_given_are_those_of_the_curvature():
+    pipeline = Pipeline()
+    for session in (TORUS, changed(estimator=Method("auto"), scale=1.0)):
+        assert pipeline.facing(session) is pipeline.curvatures(session).normals
+
+
 @pytest.mark.parametrize(
     "session",
     [

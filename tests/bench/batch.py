@@ -33,7 +33,8 @@ for number, path in enumerate(sys.argv[2:]):
     plotter.screenshot(f"{sys.argv[1]}/{number}.png")
     plotter.close()
 """
-_OURS = [sys.executable, "-c", "import sys; from app.cli.main import main; sys.exit(main())"]
+_PROGRAM = "import sys; from app.cli.program import program; sys.exit(program())"
+_OURS = [sys.executable, "-c", _PROGRAM]
 _JOB = f"""
 meshes = "meshes/*.ply"
 outputs = ["shade"]

@@ -35,7 +35,7 @@ engine.scene.add(sys.argv[1])
 engine.window.render_to_image().save(sys.argv[2])
 """
 _PEERS = {"f3d": _F3D, "PyVista": _PYVISTA}
-_OURS = "import sys; from app.cli.main import main; sys.exit(main(sys.argv[1:]))"
+_OURS = "import sys; from app.cli.program import program; sys.exit(program())"
 
 
 def million_triangles(path: Path) -> None:

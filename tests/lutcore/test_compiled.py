@@ -4,7 +4,7 @@ import sys
 
 import numba
 
-from lutcore import compiled
+from lutcore import cache, compiled
 from lutcore.compiled import cache_folder
 
 
@@ -16,7 +16,7 @@ def test_the_cache_goes_where_it_is_told(tmp_path, monkeypatch):
 def test_a_cache_that_cannot_be_written_goes_to_the_temporary_folder(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("CURVELIGHT_CACHE_DIR", str(tmp_path / "file" / "below"))
-    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(cache.tempfile, "gettempdir", lambda: str(tmp_path))
     folder = cache_folder()
     assert folder.is_dir()
     assert folder.is_relative_to(tmp_path)
@@ -27,7 +27,7 @@ def test_old_caches_are_removed_and_recent_ones_kept(tmp_path, monkeypatch):
     old, recent = tmp_path / "compiled" / "old", tmp_path / "compiled" / "recent"
     old.mkdir(parents=True)
     recent.mkdir()
-    compiled.os.utime(old, (0.0, 0.0))
+    cache.os.utime(old, (0.0, 0.0))
     cache_folder()
     assert not old.exists()
     assert recent.exists()
@@ -80,3 +80,27 @@ def test_the_user_is_told_once_when_something_has_to_be_compiled(tmp_path):
         for _ in range(2)
     ]
     assert said == [["compiling"], []]
+
+
+def test_kept_code_is_loaded_without_what_compiles_and_more_can_be_compiled_after(tmp_path):
+    code = (
+        "import sys, lutcore.topology, numpy;"
+        "rows = numpy.array([[0, 2], [1, 2]]);"
+        "found = [lutcore.topology.components(rows, 4)[0]];"
+        "compilers = 'numba.np.arraymath', 'scipy.linalg';"
+        "print(any(name in sys.modules for name in compilers));"
+        "kinds = numpy.int16, numpy.int8;"
+        "found += [lutcore.topology.components(rows.astype(kind), 4)[0] for kind in kinds];"
+        "print(*found)"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code.replace("int8", kind)],
+            env={**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for kind in ("int16", "int8")
+    ]
+    assert said == [["True", *"222"], ["False", *"222"]]

@@ -4,8 +4,9 @@ from scipy.sparse import csr_matrix
 
 from lutcore import analytic
 from lutcore.bands import INTERIOR, bands
-from lutcore.cosmoothing import smooth, surface
+from lutcore.cosmoothing import shape_operators, smooth, smoothed_normals, surface
 from lutcore.estimation import principal_curvatures
+from lutcore.lowpass import low_pass
 from lutcore.mesh import TriangleMesh
 from lutcore.scale import rungs, rungs_for
 from lutcore.selection import tilt_correction
@@ -217,3 +218,15 @@ def test_rates_are_relative_to_the_largest_row():
     on = surface(analytic.torus(500).mesh)
     rows = csr_matrix((on.operator.rate, on.operator.neighbour, on.operator.start)).sum(axis=1)
     assert rows.max() == pytest.approx(1.0, rel=1e-6)
+
+
+def test_what_is_left_out_changes_nothing_of_the_rest():
+    on = surface(analytic.torus(2_000).noisy(0.02))
+    change = low_pass(on.operator, on.fields, [2.0 * on.spacing, 4.0 * on.spacing])
+    given = on.operator.start, on.operator.neighbour, on.fields, change, 1, on.spacing
+    normals, tensors, stretch = shape_operators(*given)
+    np.testing.assert_array_equal(smoothed_normals(on.fields, change, 1), normals)
+    for first in (1, 2):
+        _, some, open_ = shape_operators(*given, first)
+        np.testing.assert_array_equal(some, tensors[:, first:])
+        np.testing.assert_array_equal(open_, stretch[:, first:])

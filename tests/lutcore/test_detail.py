@@ -135,7 +135,37 @@ def test_rims_specks_and_loose_vertices_are_shaded_too():
     assert np.abs(trace[rim] - np.maximum(sheet.truth.k1, 0.0)[rim]).max() < 0.35
     nothing = detail_seen(TriangleMesh(np.zeros((3, 3)), [[0, 1, 2]]), "skin1")
     assert not nothing.normals.any()
+    assert not nothing.smooth.any()
     assert not nothing.shape.any()
+
+
+@pytest.mark.parametrize("order", ["regular", "random"])
+def test_what_has_no_channels_gets_the_normals_of_the_curvature_at_one_scale(order):
+    mesh = bumpy(20_000)
+    if order == "random":  # detail and curvature then arrange the vertices first
+        number = np.random.default_rng(3).permutation(len(mesh.vertices))
+        place = np.argsort(number)
+        mesh = TriangleMesh(mesh.vertices[number], place[mesh.faces])
+    seen = detail_seen(mesh, "skin1", 0.5)
+    # Summed in another order where vertices are arranged.
+    expected = shading_scale(mesh, bake("skin1").glow / 0.5)
+    assert seen.scale == pytest.approx(expected, rel=1e-14)
+    found = principal_curvatures(mesh, scale=seen.scale)
+    np.testing.assert_array_equal(seen.smooth, found.normals)
+
+
+def test_local_models_need_no_curvature_where_there_is_detail():
+    mesh = bumpy(1_000)
+    seen = detail_seen(mesh, "skin1")
+    with_curvature = principal_curvatures(mesh, scale=seen.scale)
+    bent, unbent = (
+        shading_inputs(mesh, found, "skin1", [LIGHT], detail=seen)
+        for found in (with_curvature, None)
+    )
+    np.testing.assert_array_equal(exitance(Lambert(), unbent), exitance(Lambert(), bent))
+    assert np.isnan(unbent.shape).all()
+    with pytest.raises(ParameterError, match="neither"):
+        shading_inputs(mesh, None, "skin1", [LIGHT])
 
 
 def test_without_differences_between_channels_nothing_changes():
