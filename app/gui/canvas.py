@@ -164,16 +164,21 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         Parameters
         ----------
         look : PixelLook or None
-            Of what is shown. Move `by_pixel` before the next frame.
+            Of what is shown.
         """
         if self.by_pixel is not None:
             self.by_pixel.remove()
             self.by_pixel = None
             self.resend()  # colours that came meanwhile were not sent
-        if look is not None and self.drawn and self.drawn[0].actor is not None:
+        made, camera = self.composition, self.camera
+        if look is None or made is None or camera is None or made.exposure is None:
+            return
+        if self.drawn and self.drawn[0].actor is not None:
             coarse = self._stand_in.of(0)
             actors = [(self.drawn[0].actor, None), *([coarse] if coarse else [])]
-            self.by_pixel = PixelLight(look, actors, self.origin)
+            self.by_pixel = PixelLight(
+                look, actors, self.origin, made.session, camera, made.exposure
+            )
 
     def resend(self) -> None:
         """Send the first mesh's colours to the renderer once more."""

@@ -43,7 +43,9 @@ class Ours:
         self.window = vtkRenderWindow()
         self.window.SetMultiSamples(0)
         self.window.SetSize(*_SIZE)
-        self.drawn = fill(self.window, self.made.panels, _SIZE, session.background)
+        self.origin = self.made.camera.target
+        panels = self.made.panels
+        self.drawn = fill(self.window, panels, _SIZE, session.background, 1, self.origin)
         self.draw()
 
     def draw(self) -> None:
@@ -115,7 +117,8 @@ def frame_per_pixel(label: str, ours: Ours, plain: Plain) -> dict[str, Any]:
 
     session, made = ours.session, ours.made
     look = look_of(session, ours.pipeline, axes(made.camera))
-    light = PixelLight(look, [(ours.drawn[0].actor, None)], made.camera.target)
+    actors = [(ours.drawn[0].actor, None)]
+    light = PixelLight(look, actors, ours.origin, session, made.camera, made.exposure or 1.0)
 
     def drag(step: int) -> None:
         first, *others = session.lights

@@ -111,3 +111,22 @@ def test_computing_is_measured(window) -> None:
 
     made = window.controller.outcome.composition
     assert 0.0 < step_seconds(made, window.controller.pipeline) < 60.0
+
+
+def test_the_first_frame_at_pixels_is_in_its_colours(window, qtbot, monkeypatch) -> None:
+    """Whoever draws first after the switch, and before anything else is told, draws the picture."""
+    vertex, first = pixels(window).astype(int), []
+    shade = window.canvas.shade_by_pixel
+
+    def shade_and_look(look) -> None:
+        shade(look)
+        if look is not None:
+            first.append(pixels(window).astype(int))
+
+    monkeypatch.setattr(window.canvas, "shade_by_pixel", shade_and_look)
+    _by_pixel(qtbot, window)
+    assert len(first) == 1
+    mesh = (vertex != vertex[2, 2]).any(axis=2)
+    assert (first[0] != vertex).any()
+    assert np.median(np.abs(first[0] - vertex)[mesh]) <= 1
+    np.testing.assert_array_equal(first[0], pixels(window))
