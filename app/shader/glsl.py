@@ -26,10 +26,10 @@ vec3 glowUnit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-30)); }
 _BENDING = """
 float glowBend(vec3 n, vec3 form, vec3 w) {
   // The frame of app.shader.vertices.forms.
-  float sign = n.z >= 0.0 ? 1.0 : -1.0;
-  float a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-  float p = dot(vec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), w);
-  float q = dot(vec3(b, sign + n.y * n.y * a, -n.y), w);
+  float side = n.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+  float p = dot(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), w);
+  float q = dot(vec3(b, side + n.y * n.y * a, -n.y), w);
   return length(vec2(form.x * p + form.z * q, form.z * p + form.y * q));
 }
 """
@@ -58,9 +58,9 @@ float glowOf(float a, float bend, int c) {{
 # IEC 61966-2-1, as in lutcore.color, its power as a polynomial in the fourth root: within .01/255.
 _SEEN = """
 glowShone = clamp(glowExposure * glowEntering(abs({seen})) * {kept} * glowShone, 0.0, 1.0);
-vec3 glowRoot = sqrt(glowShone), q = sqrt(glowRoot);
-vec3 glowPower = -0.06461153 + q * 0.19613584
-  + glowRoot * (1.12268167 - 0.3355016 * q + 0.08132999 * glowRoot);
+vec3 glowRoot = sqrt(glowShone), glowFourth = sqrt(glowRoot);
+vec3 glowPower = -0.06461153 + 0.19613584 * glowFourth
+  + glowRoot * (1.12268167 - 0.3355016 * glowFourth + 0.08132999 * glowRoot);
 gl_FragData[0] = vec4(mix(12.92 * glowShone, glowPower, step(0.0031308, glowShone)), 1.0);
 """
 
