@@ -124,7 +124,8 @@ def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> 
     MeshError, ParameterError
         If the mesh or a parameter does not allow it.
     """
-    return _Studio(session, pipeline, held).composition()
+    with pipeline.still():
+        return _Studio(session, pipeline, held).composition()
 
 
 def render(session: Session, pipeline: Pipeline) -> Picture:

@@ -2,7 +2,8 @@
 
 import dataclasses
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
@@ -92,6 +93,19 @@ class Pipeline:
     def __init__(self, progress: Progress = silent) -> None:
         self.progress = progress
         self._kept: dict[str, OrderedDict[Hashable, object]] = {}
+        self._read: dict[Hashable, Subject] | None = None
+
+    @contextmanager
+    def still(self) -> Iterator[None]:
+        """Take files as they are when first asked for: a picture asks for them two dozen times."""
+        if self._read is not None:
+            yield
+            return
+        self._read = {}
+        try:
+            yield
+        finally:
+            self._read = None
 
     def subject(self, session: Session) -> Subject:
         """Return the session's mesh.
@@ -113,16 +127,24 @@ class Pipeline:
         ParameterError
             If it names a sample that does not exist.
         """
+        read, name = self._read, (session.mesh, _key(session.volume))
+        loaded = None if read is None else read.get(name)
+        if loaded is None:
+            loaded = self._loaded(session)
+            if read is not None:
+                read[name] = loaded
+        return self._repaired(loaded, session.repairs)
+
+    def _loaded(self, session: Session) -> Subject:
         found = None
         if session.mesh.startswith(PREFIX):
             found = self.once(("sample", session.mesh), lambda: sample(session.mesh))
         source = source_of(found.path if found else Path(session.mesh))
         volume = session.volume
         key = ("subject", *((str(one), _stamp(one)) for one in source.files), _key(volume))
-        loaded = self.once(
+        return self.once(
             key, lambda: Subject(load_surface(source, volume, self.progress), found, volume)
         )
-        return self._repaired(loaded, session.repairs)
 
     def _repaired(self, subject: Subject, repairs: tuple[Repair, ...]) -> Subject:
         """Do repairs in order, each once: one more, or one less, is not to begin anew."""

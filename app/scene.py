@@ -357,7 +357,8 @@ def _poly_data(surface: Surface, shape: vtkPolyData) -> vtkPolyData:
 def _set_scalars(data: vtkPolyData, surface: Surface) -> None:
     shown = surface.rgb if surface.rgb is not None else surface.values
     if shown is not None:
-        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=True))
+        # Not copied: nobody changes colours that were computed.
+        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(shown), deep=False))
 
 
 def _lookup(scale: ColorScale) -> vtkLookupTable:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numba import prange
 from numpy.typing import ArrayLike
 
 from lutcore.arrays import FloatArray, IndexArray, finite
@@ -136,6 +135,27 @@ class ShadingModel(Parameters, ABC):
         lights = inputs.lights.copy()
         lights[:, 8:] *= np.arange(3) == channel  # models need not look the others up
         return self.shade(replace(inputs, lights=lights))[:, channel]
+
+    def shade_detail(self, inputs: ShadingInputs, seen: Detail) -> FloatArray:
+        """Compute what leaves a surface that each channel sees otherwise.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            Everything but normals and S+.
+        seen : Detail
+            Those of each channel.
+
+        Returns
+        -------
+        ndarray, shape=(n, 3)
+            What `shade` gives for each, to the last bit. A model may have a shorter way.
+        """
+        out = np.empty(inputs.points.shape)
+        for channel, (normals, shape) in enumerate(zip(seen.normals, seen.shape, strict=True)):
+            alone = replace(inputs, normals=normals, shape=shape, detail=None)
+            out[:, channel] = self.shade_channel(alone, channel)
+        return out
 
     def predicted_error(self, scene: "Scene") -> FloatArray | None:
         """Predict how wrong the model will be, without running it.
@@ -381,10 +401,10 @@ def exitance(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
     return out
 
 
-@compiled(parallel=True)
+@compiled()
 def _darken(out: FloatArray, normals: FloatArray) -> None:
-    """Set to 0 where there is no normal."""
-    for i in prange(len(out)):
+    """Set to 0 where there is no normal: sooner done than other threads are woken."""
+    for i in range(len(out)):
         if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
             out[i] = 0.0
 
@@ -409,13 +429,7 @@ def bared(inputs: ShadingInputs) -> ShadingInputs:
 def _by_channel(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
     """Run a local model once, or for each channel with what that one's light sees."""
     seen = inputs.detail
-    if seen is None:
-        return model.shade(inputs)
-    out = np.empty(inputs.points.shape)
-    for channel, (normals, shape) in enumerate(zip(seen.normals, seen.shape, strict=True)):
-        alone = replace(inputs, normals=normals, shape=shape, detail=None)
-        out[:, channel] = model.shade_channel(alone, channel)
-    return out
+    return model.shade(inputs) if seen is None else model.shade_detail(inputs, seen)
 
 
 def _shape(curvatures: PrincipalCurvatures, count: int, per_mm: float) -> FloatArray:

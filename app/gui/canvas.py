@@ -164,16 +164,21 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         Parameters
         ----------
         look : PixelLook or None
-            Of what is shown. Move `by_pixel` before the next frame.
+            Of what is shown.
         """
         if self.by_pixel is not None:
             self.by_pixel.remove()
             self.by_pixel = None
             self.resend()  # colours that came meanwhile were not sent
-        if look is not None and self.drawn and self.drawn[0].actor is not None:
+        made, camera = self.composition, self.camera
+        if look is None or made is None or camera is None or made.exposure is None:
+            return
+        if self.drawn and self.drawn[0].actor is not None:
             coarse = self._stand_in.of(0)
             actors = [(self.drawn[0].actor, None), *([coarse] if coarse else [])]
-            self.by_pixel = PixelLight(look, actors, self.origin)
+            self.by_pixel = PixelLight(
+                look, actors, self.origin, made.session, camera, made.exposure
+            )
 
     def resend(self) -> None:
         """Send the first mesh's colours to the renderer once more."""
@@ -189,6 +194,38 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
     def coarsely(self) -> bool:
         """Whether something moves and is drawn coarsely."""
         return self._stand_in.shown
+
+    @property
+    def seconds(self) -> float:
+        """Of the last frame of the meshes themselves, not of coarse ones; 0 before it."""
+        return self._frame
+
+    @property
+    def has_coarse(self) -> bool:
+        """Whether there is something coarse to be drawn in place of the first mesh."""
+        return self._stand_in.of(0) is not None
+
+    def draw_unseen(self) -> None:
+        """Draw the coarse mesh to the end, in part of the view, and leave what is on the screen.
+
+        Its triangles have as many pixels as those of the mesh itself in the whole view, so that
+        both take their time for the same things.
+        """
+        found, renderer = self._stand_in.coarse, self.drawn[0].renderer
+        if found is None:
+            return
+        share = (len(found.mesh.faces) / len(found.fine.faces)) ** 0.5
+        left, low, right, high = renderer.GetViewport()
+        renderer.SetViewport(left, low, left + share * (right - left), low + share * (high - low))
+        self._stand_in.show(self.drawn, True)
+        self.window_.SwapBuffersOff()
+        try:
+            self.window_.Render()
+            self.window_.WaitForCompletion()
+        finally:
+            self.window_.SwapBuffersOn()
+            self._stand_in.show(self.drawn, False)
+            renderer.SetViewport(left, low, right, high)
 
     def _recolor(self, index: int, panel: Panel) -> None:
         actor = self.drawn[index].actor

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 
 from qtpy.QtCore import QObject, QTimer
 
@@ -15,6 +16,8 @@ from app.shader.look import PixelLook
 
 # The first of each compiles, and sends the mesh; of the others the fastest counts.
 _FRAMES = 3
+# Where a frame takes longer the coarse mesh is drawn for it: nobody waits for a race.
+_LONG = 0.1
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class Contest:
     vertex : float
         To send colours, and draw.
     pixel : float
-        To set uniforms, and draw.
+        To set uniforms, and draw; infinite where it was not tried.
     """
 
     computing: float
@@ -44,6 +47,8 @@ class Contest:
     def label(self) -> str:
         """The times in words."""
         vertex, pixel = 1e3 * (self.computing + self.vertex), 1e3 * self.pixel
+        if self.pixel == inf:
+            return f"at vertices: {vertex:.0f} ms for each step of a light, too slow to compare"
         return f"at vertices {vertex:.0f} ms for each step of a light, at pixels {pixel:.0f} ms"
 
 
@@ -82,6 +87,9 @@ def step_seconds(made: Composition, pipeline: Pipeline) -> float:
 
 class PixelRace(QObject):
     """Draws the view a few times in both ways, a frame for each turn of the event loop.
+
+    Where the mesh is slow to draw, its coarse stand-in is drawn, smaller and unseen, and the mesh
+    is taken to be slower by the same factor in both ways; where there is none, the vertices win.
 
     Parameters
     ----------
@@ -123,18 +131,29 @@ class PixelRace(QObject):
         canvas = self._canvas
         if canvas.coarsely or not canvas.isVisible():
             return  # something moves: later
+        slow = canvas.seconds > _LONG
+        if slow and not canvas.has_coarse:
+            self._end(canvas.seconds, inf)
+            return
         by_pixel = len(self._seconds[False]) == _FRAMES
         if by_pixel and canvas.by_pixel is None:
             canvas.shade_by_pixel(self._look)
         start = time.perf_counter()
         if by_pixel:
             self._move()
-        else:
+        elif not slow:
             canvas.resend()
-        canvas.window_.Render()
-        canvas.window_.WaitForCompletion()
+        if slow:
+            canvas.draw_unseen()
+        else:
+            canvas.window_.Render()
+            canvas.window_.WaitForCompletion()
         self._seconds[by_pixel].append(time.perf_counter() - start)
         if len(self._seconds[True]) == _FRAMES:
-            self.stop()
             vertex, pixel = (min(self._seconds[one][1:]) for one in (False, True))
-            self._done(Contest(self._computing, vertex, pixel))
+            longer = canvas.seconds / vertex if slow else 1.0
+            self._end(longer * vertex, longer * pixel)
+
+    def _end(self, vertex: float, pixel: float) -> None:
+        self.stop()
+        self._done(Contest(self._computing, vertex, pixel))

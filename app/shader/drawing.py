@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
-from vtkmodules.vtkRenderingCore import vtkActor, vtkShaderProperty, vtkTexture
+from vtkmodules.vtkRenderingCore import vtkActor, vtkShaderProperty, vtkTexture, vtkUniforms
 
 from app.camera import axes
 from app.session import Camera, Session, Vector
 from app.shader import glsl
-from app.shader.look import MOST_LIGHTS, PixelLook, SingleArray, packed
-from lutcore.lights import LIGHT_FIELDS
+from app.shader.look import PixelLook, packed
+from app.shader.table import SingleArray
 
 if TYPE_CHECKING:
     from lutcore.arrays import AnyArray
@@ -34,6 +34,8 @@ class PixelLight:
         has, None for all. They may share a shader property.
     origin : tuple of 3 floats
         What the geometry is drawn relative to.
+    session, camera, exposure
+        As for `move`: no frame is drawn without them.
     """
 
     def __init__(
@@ -41,6 +43,9 @@ class PixelLight:
         look: PixelLook,
         actors: "Sequence[tuple[vtkActor, AnyArray | None]]",
         origin: Vector,
+        session: Session,
+        camera: Camera,
+        exposure: float,
     ) -> None:
         self.look = look
         self._actors = list(actors)
@@ -48,16 +53,13 @@ class PixelLight:
         self._texture = None if look.table is None else _texture(look.table)
         for actor, vertices in self._actors:
             self._give(actor, vertices)
-        for style in self._styles():
-            _replace(style, look)
-        # All that the shader names must be there at the first frame, or it cannot be built.
-        dark = {glsl.LIGHTS: (0.0,) * (MOST_LIGHTS * LIGHT_FIELDS), glsl.EYE: (0.0, 0.0, 1.0, 0.0)}
         for actor, _ in self._actors:
-            self._set(actor, look.numbers | dark)
-            self._count(actor, 0, 1.0)
+            self._set(actor, look.numbers)
+        self._beamed: list[bool] | None = None
+        self.move(session, camera, exposure)
 
     def move(self, session: Session, camera: Camera, exposure: float) -> None:
-        """Follow lights, camera and exposure: uniforms, and nothing else.
+        """Follow lights, camera and exposure: by uniforms alone, unless lights are of other kinds.
 
         Parameters
         ----------
@@ -73,21 +75,28 @@ class PixelLight:
         rows[beamed, 1:4] -= self._origin
         parallel = camera.height is not None
         eye = axes(camera)[2] if parallel else np.subtract(camera.position, self._origin)
-        numbers = {
+        numbers: dict[str, tuple[float, ...]] = {
             glsl.LIGHTS: tuple(rows.ravel()),
             glsl.EYE: (*eye, 0.0 if parallel else 1.0),
         }
         for actor, _ in self._actors:
             self._set(actor, numbers)
-            self._count(actor, len(session.lights), exposure)
+            for uniforms in _uniforms(actor):
+                uniforms.SetUniformf(glsl.EXPOSURE, exposure)
+        kinds = beamed[: len(session.lights)].tolist()
+        if kinds != self._beamed:
+            self._beamed = kinds
+            for style in self._styles():
+                _clear(style)
+                _replace(style, glsl.Glow(self.look, kinds))
 
     def remove(self) -> None:
         """Leave the actors as they were, in the colours of their vertices."""
         for style in self._styles():
-            style.ClearAllVertexShaderReplacements()
-            style.ClearAllFragmentShaderReplacements()
-            style.GetFragmentCustomUniforms().RemoveAllUniforms()
+            _clear(style)
         for actor, _ in self._actors:
+            for uniforms in _uniforms(actor):
+                uniforms.RemoveAllUniforms()
             mapper = actor.GetMapper()
             mapper.RemoveAllVertexAttributeMappings()
             mapper.ScalarVisibilityOn()
@@ -119,39 +128,42 @@ class PixelLight:
             actor.GetProperty().SetTexture(glsl.TABLE, self._texture)
 
     @staticmethod
-    def _count(actor: vtkActor, lights: int, exposure: float) -> None:
-        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-        uniforms.SetUniformi(glsl.COUNT, lights)
-        uniforms.SetUniformf(glsl.EXPOSURE, exposure)
-
-    @staticmethod
     def _set(actor: vtkActor, numbers: dict[str, tuple[float, ...]]) -> None:
-        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-        for name, values in numbers.items():
-            uniforms.SetUniform1fv(name, len(values), values)
+        for uniforms in _uniforms(actor):
+            for name, values in numbers.items():
+                uniforms.SetUniform1fv(name, len(values), values)
+
+
+def _uniforms(actor: vtkActor) -> tuple[vtkUniforms, vtkUniforms]:
+    style = actor.GetShaderProperty()
+    return style.GetVertexCustomUniforms(), style.GetFragmentCustomUniforms()
 
 
 def _array(name: str) -> str:
     return f"pixel {name}"
 
 
-def _replace(style: vtkShaderProperty, look: PixelLook) -> None:
-    declared, done, taken = glsl.passed(look)
+def _clear(style: vtkShaderProperty) -> None:
+    style.ClearAllVertexShaderReplacements()
+    style.ClearAllFragmentShaderReplacements()
+
+
+def _replace(style: vtkShaderProperty, code: glsl.Glow) -> None:
     add = style.AddVertexShaderReplacement
-    add(_DECLARED, True, declared + _DECLARED, False)
-    add(_DONE, True, done + _DONE, False)
+    add(_DECLARED, True, code.vertex_functions + _DECLARED, False)
+    add(_DONE, True, code.vertex_code + _DONE, False)
     add = style.AddFragmentShaderReplacement
-    add(_DECLARED, True, taken + _DECLARED, False)
+    add(_DECLARED, True, code.pixel_inputs + _DECLARED, False)
     # Behind the sampler, which VTK declares itself.
-    add(_TEXTURES, True, f"{_TEXTURES}\n{glsl.functions(look)}", False)
-    add(_COLOR, True, glsl.color(look), False)
+    add(_TEXTURES, True, f"{_TEXTURES}\n{code.pixel_functions}", False)
+    add(_COLOR, True, code.pixel_code, False)
 
 
 def _texture(table: SingleArray) -> vtkTexture:
-    channels, samples = table.shape
+    rows, columns, parts = table.shape
     image = vtkImageData()
-    image.SetDimensions(samples, channels, 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(table.ravel(), deep=True))
+    image.SetDimensions(columns, rows, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(table.reshape(-1, parts), deep=True))
     made = vtkTexture()
     made.SetInputData(image)
     made.SetColorModeToDirectScalars()

@@ -1,19 +1,38 @@
-"""The shading models in GLSL 1.50, for the fragment shader that VTK puts together.
+"""The shading models in GLSL 1.50, for the shaders that VTK puts together.
 
-The same formulas as `plugins.shading`, `lutcore.lut`, `lutcore.lights` and `lutcore.color`; tests
-hold them together. Positions are relative to the origin of the view, light is linear until the
-last line.
+The same formulas as `plugins.shading`, `lutcore.lights` and `lutcore.color`; tests hold them
+together. What changes little within a triangle is computed at its corners: the bend of the surface
+towards each light, the area's correction, the cosine towards the camera. Normals, response,
+Fresnel factors and encoding are those of the pixel. Positions are relative to the origin of the
+view, light is linear until the last line.
 """
 
-from app.shader.look import HALF, MOST_LIGHTS, PixelLook
+from collections.abc import Sequence
+
+from app.shader.look import PixelLook
+from app.shader.packing import Packing
+from app.shader.table import BEND, COLUMNS, MOST, ROWS
 from lutcore.lights import LIGHT_FIELDS
 
-EYE, EXPOSURE, LIGHTS, COUNT = "glowEye", "glowExposure", "glowLights", "glowCount"
+EYE, EXPOSURE, LIGHTS = "glowEye", "glowExposure", "glowLights"
 """Uniforms that follow what moves; those of a look are in `PixelLook.numbers`."""
 TABLE = "glowTable"
 """The texture."""
-_PLACE = "glowPlace"
 
+# A vertex without a normal has none between, and stays dark.
+_UNIT = """
+vec3 glowUnit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-30)); }
+"""
+_BENDING = """
+float glowBend(vec3 n, vec3 form, vec3 w) {
+  // The frame of app.shader.vertices.forms.
+  float side = n.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+  float p = dot(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), w);
+  float q = dot(vec3(b, side + n.y * n.y * a, -n.y), w);
+  return length(vec2(form.x * p + form.z * q, form.z * p + form.y * q));
+}
+"""
 _TRANSMITTANCE = """
 float glowEntering(float c) {
   float n = glowEta[0];
@@ -22,169 +41,141 @@ float glowEntering(float c) {
   float parallel = (n * c - inside) / (n * c + inside + 1e-20);
   return 1.0 - 0.5 * (crossing * crossing + parallel * parallel);
 }
-// A vertex without a normal has none between, and stays dark.
-vec3 glowUnit(vec3 v) { return v / max(length(v), 1e-20); }
 """
-# The tiny number only decides 0/0, where the glow is 0 times psi(0).
-_CURVED = """
-float glowOf(float cosine, vec3 bending, int c) {
-  float b = glowLength[c] * length(bending);
-  float even = 0.0, lit = 0.0;
-  for (int j = 0; j < {hinges}; ++j) {
-    float a = cosine - glowCorners[j];
-    float at = {last}.0 * b / (b + {half} * abs(a) + 1e-20);
-    int segment = int(at);
-    float psi = texelFetch(glowTable, ivec2(segment, c), 0).r;
-    float next = texelFetch(glowTable, ivec2(min(segment + 1, {last}), c), 0).r;
-    lit += glowWeights[j] * max(a, 0.0);
-    even += glowWeights[j] * (mix(psi, next, at - float(segment)));
-  }
-  return lit + b * even;
-}
-vec3 glowBending(vec3 spread, vec3 twist, vec3 w) {
-  return vec3(dot(vec3(spread.x, twist.x, twist.z), w),
-              dot(vec3(twist.x, spread.y, twist.y), w),
-              dot(vec3(twist.z, twist.y, spread.z), w));
-}
-float glowArea2(vec3 spread, vec3 twist) {
-  float trace = spread.x + spread.y + spread.z;
-  return 2.0 * (dot(spread, spread) + 2.0 * dot(twist, twist)) + trace * trace;
-}
+# Between samples of a pixel a bend may come out below 0. The texture is not filtered: a place in
+# the middle of a texel names it, and costs less than its indices.
+_RESPONSE = f"""
+float glowOf(float a, float bend, int c) {{
+  float kappa = max(bend, 0.0), root = sqrt(kappa);
+  vec2 at = vec2({COLUMNS / 2:.1f} + {COLUMNS / 2 * (BEND + MOST) / MOST} * a / ({BEND} + abs(a)),
+                 min({ROWS:.1f} * root / (glowHalfway[c] + root), {ROWS - 0.001}));
+  vec2 cell = floor(at), f = at - cell;
+  vec2 middle = cell + vec2(0.5, 0.5 + {ROWS:.1f} * float(c));
+  vec4 k = texture(glowTable, middle * vec2({1.0 / COLUMNS}, {1.0 / (3 * ROWS)}));
+  return (1.0 + glowLength[c] * kappa) * (k.x + f.x * k.y + f.y * (k.z + f.x * k.w));
+}}
 """
-_LIGHT = """
-vec3 glowShone = vec3(0.0);
-for (int i = 0; i < glowCount; ++i) {{
-  int k = {fields} * i;
-  vec3 w = vec3(glowLights[k + 1], glowLights[k + 2], glowLights[k + 3]);
-  float strength = 1.0;
-  if (glowLights[k] != 0.0) {{
-    w -= {place};
-    float square = dot(w, w);
-    w *= inversesqrt(max(square, 1e-30));
-    vec3 axis = vec3(glowLights[k + 4], glowLights[k + 5], glowLights[k + 6]);
-    strength = square > 0.0 && -dot(w, axis) >= glowLights[k + 7] ? 1.0 / square : 0.0;
-  }}
-  vec3 color = strength * vec3(glowLights[k + 8], glowLights[k + 9], glowLights[k + 10]);
-{sum}}}
-"""
-# IEC 61966-2-1, as in lutcore.color.
+# IEC 61966-2-1, as in lutcore.color, its power as a polynomial in the fourth root: within .01/255.
 _SEEN = """
-vec3 glowView = glowEye[3] > 0.0
-  ? normalize(vec3(glowEye[0], glowEye[1], glowEye[2]) - {place})
-  : vec3(glowEye[0], glowEye[1], glowEye[2]);
-float glowExit = glowEntering(abs(dot({leaving}, glowView)));
-glowShone = clamp(glowExposure * glowExit * glowShone{albedo}, 0.0, 1.0);
-vec3 glowPower = 1.055 * pow(glowShone, vec3(1.0 / 2.4)) - 0.055;
+glowShone = clamp(glowExposure * glowEntering(abs({seen})) * {kept} * glowShone, 0.0, 1.0);
+vec3 glowRoot = sqrt(glowShone), glowFourth = sqrt(glowRoot);
+vec3 glowPower = -0.06461153 + 0.19613584 * glowFourth
+  + glowRoot * (1.12268167 - 0.3355016 * glowFourth + 0.08132999 * glowRoot);
 gl_FragData[0] = vec4(mix(12.92 * glowShone, glowPower, step(0.0031308, glowShone)), 1.0);
 """
 
 
-def passed(look: PixelLook) -> tuple[str, str, str]:
-    """Return how attributes come from the vertices to the pixels.
+class Glow:
+    """The code for a look under lights of given kinds.
 
     Parameters
     ----------
     look : PixelLook
-        Names them.
-
-    Returns
-    -------
-    tuple of str
-        Declarations and code of the vertex shader, declarations of the fragment shader.
+        The model, and what each vertex has.
+    beamed : sequence of bool
+        For each light whether it has a position.
     """
-    names = list(look.attributes)
-    declared = "".join(f"in vec3 {name};\nout vec3 {_out(name)};\n" for name in names)
-    done = "".join(f"{_out(name)} = {name};\n" for name in names)
-    taken = "".join(f"in vec3 {_out(name)};\n" for name in names)
-    return (
-        f"{declared}out vec3 {_PLACE};\n",
-        f"{done}{_PLACE} = vertexMC.xyz;\n",
-        f"{taken}in vec3 {_PLACE};\n",
-    )
 
+    def __init__(self, look: PixelLook, beamed: Sequence[bool]) -> None:
+        self._look, self._beamed = look, tuple(beamed)
+        self._channels = range(3 if look.by_channel else 1)
+        self._bent = look.table is not None
+        parts = {f"facing{c}": 3 for c in self._channels} | {"seen": 1}
+        if self._bent:
+            parts |= {f"bend{light}": len(self._channels) for light in range(len(self._beamed))}
+        if "kept" in look.parts:
+            parts["kept"] = 3
+        if any(self._beamed):
+            parts["place"] = 3
+        self._passed = Packing("glowPassed", parts)
 
-def functions(look: PixelLook) -> str:
-    """Return what the fragment shader needs before its main function.
+    @property
+    def vertex_functions(self) -> str:
+        """What the vertex shader needs before its main function."""
+        given, passed = self._look.parts.declared("in"), self._passed.declared("out")
+        return given + passed + _UNIT + (_BENDING if self._bent else "")
 
-    Parameters
-    ----------
-    look : PixelLook
-        The model.
+    @property
+    def vertex_code(self) -> str:
+        """What the vertex shader does."""
+        given = self._look.parts
+        leaving = given.taken("leaving" if "leaving" in given else "facing0")
+        values = {"seen": f"dot({leaving}, glowView)", "place": "vertexMC.xyz"}
+        same = [f"facing{c}" for c in self._channels] + ["kept"]
+        values |= {part: given.taken(part) for part in same if part in given}
+        towards = ""
+        if self._bent:
+            for light, beamed in enumerate(self._beamed):
+                w = self._vector(light, 1)
+                towards += f"vec3 w{light} = "
+                towards += f"glowUnit({w} - vertexMC.xyz);\n" if beamed else f"{w};\n"
+                values[f"bend{light}"] = _joined([self._bend(c, light) for c in self._channels])
+        view = """vec3 glowView = vec3(glowEye[0], glowEye[1], glowEye[2]);
+if (glowEye[3] > 0.0) glowView = normalize(glowView - vertexMC.xyz);
+"""
+        return view + towards + self._passed.given(values)
 
-    Returns
-    -------
-    str
-        GLSL.
-    """
-    if look.table is None:
-        return _TRANSMITTANCE
-    last = str(look.table.shape[1] - 1)
-    curved = _CURVED.replace("{hinges}", str(look.hinges)).replace("{last}", last)
-    curved = curved.replace("{half}", f"{1.0 / HALF}")
-    return _TRANSMITTANCE + curved
+    @property
+    def pixel_inputs(self) -> str:
+        """What the fragment shader gets."""
+        return self._passed.declared("in")
 
+    @property
+    def pixel_functions(self) -> str:
+        """What the fragment shader needs before its main function, behind its textures."""
+        return _UNIT + _TRANSMITTANCE + (_RESPONSE if self._bent else "")
 
-def color(look: PixelLook) -> str:
-    """Return the code that gives a pixel its colour.
+    @property
+    def pixel_code(self) -> str:
+        """What gives a pixel its colour."""
+        code = "vec3 glowShone = vec3(0.0);\n"
+        for c in self._channels:
+            code += f"vec3 n{c} = glowUnit({self._passed.taken(f'facing{c}')});\n"
+        code += "".join(map(self._lit, range(len(self._beamed))))
+        kept = "vec3(glowTotal[0], glowTotal[1], glowTotal[2])"
+        if "kept" in self._passed:
+            kept = self._passed.taken("kept")
+        return code + _SEEN.format(seen=self._passed.taken("seen"), kept=kept)
 
-    Parameters
-    ----------
-    look : PixelLook
-        The model.
+    def _bend(self, channel: int, light: int) -> str:
+        given = self._look.parts
+        vectors = given.taken(f"facing{channel}"), given.taken(f"form{channel}")
+        return f"glowBend({', '.join(vectors)}, w{light})"
 
-    Returns
-    -------
-    str
-        GLSL.
-    """
-    channels = range(3 if look.by_channel else 1)
-    before = "".join(f"vec3 n{c} = glowUnit({_out(f'facing{c}')});\n" for c in channels)
-    leaving = "n0"
-    if "leaving" in look.attributes:
-        leaving = f"glowUnit({_out('leaving')})"
-    albedo = f" * {_out('albedo')}" if "albedo" in look.attributes else ""
-    total = "glowShone *= vec3(glowTotal[0], glowTotal[1], glowTotal[2]);\n"
-    if look.table is not None:
-        total += "".join(
-            f"glowShone[{c}] /= 1.0 + glowArea[{c}] * {_called('glowArea2', look, c)};\n"
+    def _lit(self, light: int) -> str:
+        color = self._vector(light, 8)
+        code = f"vec3 w{light} = {self._vector(light, 1)};\n"
+        if self._beamed[light]:
+            away, square = f"dot(w{light}, {self._vector(light, 4)})", f"square{light}"
+            edge = f"glowLights[{LIGHT_FIELDS * light + 7}]"
+            code += f"w{light} -= {self._passed.taken('place')};\n"
+            code += f"float {square} = dot(w{light}, w{light});\n"
+            code += f"w{light} = glowUnit(w{light});\n"
+            color += f" * ({square} > 0.0 && -{away} >= {edge} ? 1.0 / {square} : 0.0)"
+        cosines = [f"dot(n{c}, w{light})" for c in self._channels]
+        if not self._bent:
+            cosine = f"max({_joined(cosines)}, 0.0)"
+            return code + f"glowShone += {color} * {cosine}{self._entering(cosines)};\n"
+        bend = self._passed.taken(f"bend{light}")
+        code += f"{'vec3' if self._look.by_channel else 'float'} bend{light} = {bend};\n"
+        own = [
+            f"glowOf({cosines[c]}, bend{light}[{c}], {c})"
+            if self._look.by_channel
+            else f"glowOf({cosines[0]}, bend{light}, {c})"
             for c in range(3)
-        )
-    light = _LIGHT.format(fields=LIGHT_FIELDS, place=_PLACE, sum=_sum(look))
-    seen = _SEEN.format(place=_PLACE, leaving=leaving, albedo=albedo)
-    return before + light + total + seen
+        ]
+        return code + f"glowShone += {color} * {_joined(own)};\n"
+
+    def _entering(self, cosines: list[str]) -> str:
+        if not self._look.directional:
+            return ""
+        return f" * {_joined([f'glowEntering(max({one}, 0.0))' for one in cosines])}"
+
+    @staticmethod
+    def _vector(light: int, field: int) -> str:
+        at = LIGHT_FIELDS * light + field
+        return f"vec3(glowLights[{at}], glowLights[{at + 1}], glowLights[{at + 2}])"
 
 
-def room() -> int:
-    """Return how many numbers the uniform of the lights holds.
-
-    Returns
-    -------
-    int
-        `LIGHT_FIELDS` for each light.
-    """
-    return MOST_LIGHTS * LIGHT_FIELDS
-
-
-def _sum(look: PixelLook) -> str:
-    lines = []
-    for c in range(3):
-        own = c if look.by_channel else 0
-        cosine = f"dot(n{own}, w)"
-        if look.table is None:
-            factor = f"max({cosine}, 0.0)"
-            if look.directional:
-                factor += f" * glowEntering(max({cosine}, 0.0))"
-        else:
-            factor = f"glowOf({cosine}, {_called('glowBending', look, c, 'w')}, {c})"
-        lines.append(f"  if (color[{c}] > 0.0) glowShone[{c}] += color[{c}] * {factor};\n")
-    return "".join(lines)
-
-
-def _called(function: str, look: PixelLook, channel: int, *more: str) -> str:
-    own = channel if look.by_channel else 0
-    arguments = (_out(f"spread{own}"), _out(f"twist{own}"), *more)
-    return f"{function}({', '.join(arguments)})"
-
-
-def _out(name: str) -> str:
-    return f"{name}Glow"
+def _joined(values: list[str]) -> str:
+    return values[0] if len(values) == 1 else f"vec3({', '.join(values)})"

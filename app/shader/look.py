@@ -4,13 +4,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.camera import axes as axes_of
 from app.leaving import albedo
 from app.lighting import world_lights
 from app.pipeline import Pipeline, Subject
 from app.session import Camera, Session
+from app.shader.packing import Packing
+from app.shader.table import SingleArray, halfway, response
+from app.shader.vertices import forms, rows, second
 from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -21,11 +23,6 @@ MOST_LIGHTS = 8
 """As many lights as the shader has room for."""
 MODELS = ("curvature-lut", "lambert")
 """Shading models that are written as shaders."""
-HALF = 2.0
-"""|a|/b in the middle of the table."""
-# Straight lines between are within 1e-5 of psi. The position in this table takes a division, that
-# in `PsiTable.rows` a root and a logarithm more, at each pixel.
-_SAMPLES = 1024
 _VIEWS = ("shade", "figure")
 
 # What attributes, table and numbers follow from.
@@ -42,8 +39,6 @@ _FIXED = (
     "albedo",
 )
 
-SingleArray = NDArray[np.float32]
-
 
 @dataclass(frozen=True, eq=False)
 class PixelLook:
@@ -59,20 +54,24 @@ class PixelLook:
         Whether light enters by F_t(N.w), for ``lambert``.
     by_channel : bool
         Whether each channel has normals and curvature of its own.
-    attributes : dict of str to ndarray of float32, shape=(n, 3)
-        Per vertex: ``facingC``, the normal, and, for ``curvature-lut``, ``spreadC`` (xx, yy, zz)
-        and ``twistC`` (xy, yz, xz) of S+, for each channel C or for 0 alone; ``leaving``, the
-        normal that the camera sees, if not ``facing0``; ``albedo`` where there is one.
+    parts : Packing
+        Where the numbers of a vertex lie in the attributes: ``facingC``, the normal, and, for
+        ``curvature-lut``, ``formC``, S+ in its tangent plane (see `app.shader.vertices.forms`),
+        for each channel C or for 0 alone; ``leaving``, the normal that the camera sees, if not
+        ``facing0``; ``kept``, what the light is multiplied by, if it is not the same everywhere.
+    attributes : dict of str to ndarray of float32, shape=(n, 4)
+        By the names that `parts` gives.
     numbers : dict of str to tuple of float
         Constants of the material and the model by the name of their uniform.
-    table : ndarray of float32, shape=(3, samples), or None
-        For ``curvature-lut``: psi by channel at equal steps of x = b/(b + |a|/HALF), 0 to 1.
+    table : ndarray of float32, or None
+        For ``curvature-lut``: see `app.shader.table.response`.
     """
 
     session: Session
     model: str
     directional: bool
     by_channel: bool
+    parts: Packing
     attributes: dict[str, SingleArray]
     numbers: dict[str, tuple[float, ...]]
     table: SingleArray | None
@@ -91,11 +90,6 @@ class PixelLook:
             True if they differ in nothing that the shader is not told by uniforms.
         """
         return all(getattr(session, name) == getattr(self.session, name) for name in _FIXED)
-
-    @property
-    def hinges(self) -> int:
-        """Look-ups for each light and channel."""
-        return len(self.numbers.get("glowCorners", ()))
 
 
 def unsupported(session: Session, subject: Subject) -> str:
@@ -148,70 +142,52 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
     MeshError, ParameterError
         If the mesh or a parameter does not allow it.
     """
+    from lutcore.fresnel import hinges
     from plugins.shading.curvature_lut import CurvatureLut
 
     model = pipeline.settled(session, session.model, axes)
     inputs = pipeline.inputs(session, axes)
-    seen, bent = inputs.detail, isinstance(model, CurvatureLut)
-    attributes: dict[str, SingleArray] = {}
-    if seen is None:
-        attributes["facing0"] = _single(inputs.normals)
-    else:
-        attributes["leaving"] = _single(pipeline.facing(session))
-        attributes |= {f"facing{c}": _single(seen.normals[c]) for c in range(3)}
-    if bent:
-        for channel, shape in enumerate((inputs.shape,) if seen is None else seen.shape):
-            attributes[f"spread{channel}"] = _single(shape[:, :3])
-            attributes[f"twist{channel}"] = _single(shape[:, 3:])
-    color = albedo(pipeline.subject(session)) if session.albedo else None
-    if color is not None:
-        attributes["albedo"] = _single(color)
-    table = inputs.table
+    seen, table = inputs.detail, inputs.table
+    bent = model if isinstance(model, CurvatureLut) else None
+    facing = (inputs.normals,) if seen is None else tuple(seen.normals)
+    shapes = (inputs.shape,) if seen is None else tuple(seen.shape)
+    vectors = {f"facing{channel}": normals for channel, normals in enumerate(facing)}
+    if bent is not None:
+        for channel, (normals, shape) in enumerate(zip(facing, shapes, strict=True)):
+            vectors[f"form{channel}"] = forms(normals, shape)
+    if seen is not None:
+        vectors["leaving"] = pipeline.facing(session)
+    total, kept = _total(model, table), None
+    if bent is not None and bent.area == "curved":
+        kept = total / (1.0 + second(table, shapes))
+    if session.albedo and (color := albedo(pipeline.subject(session))) is not None:
+        kept = color * (total if kept is None else kept)
+    if kept is not None:
+        vectors["kept"] = kept
+    parts = Packing("glowGiven", dict.fromkeys(vectors, 3))
     return PixelLook(
         session,
         session.model.name,
         getattr(model, "fresnel", "") == "directional",
         seen is not None,
-        attributes,
-        {"glowEta": (table.eta,)} | _numbers(model, table),
-        _table(table) if bent else None,
+        parts,
+        rows(parts, list(vectors.values())),
+        {
+            "glowEta": (table.eta,),
+            "glowTotal": tuple(total),
+            "glowLength": tuple(table.mean_free_path),
+            "glowHalfway": tuple(halfway(table) / np.sqrt(table.mean_free_path)),
+        },
+        None if bent is None else response(table, hinges(table.eta, bent.hinges)),
     )
 
 
-def _single(values: FloatArray) -> SingleArray:
-    return np.ascontiguousarray(values, dtype=np.float32)
-
-
-def _table(table: "PsiTable") -> SingleArray:
-    x = np.linspace(0.0, 1.0, _SAMPLES)
-    psi = np.zeros((3, _SAMPLES))
-    # Below the horizon there is the glow alone; at x = 0 it has ended.
-    kappa = x[1:, None] / HALF / table.mean_free_path
-    glow = table.evaluate(x[1:, None] - 1.0, kappa) / table.total
-    psi[:, 1:] = HALF * np.diagonal(glow, axis1=1, axis2=2).T / x[1:]
-    return _single(psi)
-
-
-def _numbers(model: "ShadingModel", table: "PsiTable") -> dict[str, tuple[float, ...]]:
-    from lutcore.fresnel import hinges, mean_transmittance
-    from plugins.shading.curvature_lut import CurvatureLut
+def _total(model: "ShadingModel", table: "PsiTable") -> FloatArray:
+    from lutcore.fresnel import mean_transmittance
     from plugins.shading.lambert import Lambert
 
-    if isinstance(model, CurvatureLut):
-        fit = hinges(table.eta, model.hinges)
-        # E2 of the model per (2 (k1^2 + k2^2) + (k1 + k2)^2), mm^2.
-        area = table.mean_square * table.mean_free_path**2 / 16.0
-        return {
-            "glowTotal": tuple(table.total),
-            "glowArea": tuple(area if model.area == "curved" else np.zeros(3)),
-            "glowLength": tuple(table.mean_free_path),
-            "glowSteps": tuple(table.inverse_step),
-            "glowCorners": tuple(fit.corners),
-            "glowWeights": tuple(fit.weights),
-        }
-    assert isinstance(model, Lambert)
-    entering = 1.0 if model.fresnel == "directional" else mean_transmittance(table.eta)
-    return {"glowTotal": tuple(table.total * entering)}
+    mean = isinstance(model, Lambert) and model.fresnel == "mean"
+    return table.total * mean_transmittance(table.eta) if mean else table.total
 
 
 def packed(session: Session, camera: Camera) -> FloatArray:

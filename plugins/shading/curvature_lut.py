@@ -8,6 +8,7 @@ from numba import prange
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
+from lutcore.detail import Detail
 from lutcore.fresnel import hinges
 from lutcore.lights import is_directional, light_at
 from lutcore.lut import BLOCK, PsiTable, even_forms
@@ -45,18 +46,17 @@ class CurvatureLut(ShadingModel):
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        return self._channels(inputs, 0, 3)
+        return self._shade(inputs, inputs.normals[None], inputs.shape[None])
 
-    def shade_channel(self, inputs: ShadingInputs, channel: int) -> FloatArray:
-        """Compute one channel; see `ShadingModel.shade_channel`."""
-        return self._channels(inputs, channel, channel + 1)[:, 0]
+    def shade_detail(self, inputs: ShadingInputs, seen: Detail) -> FloatArray:
+        """Compute all channels at once; see `ShadingModel.shade_detail`."""
+        return self._shade(inputs, seen.normals, seen.shape)
 
-    def _channels(self, inputs: ShadingInputs, start: int, stop: int) -> FloatArray:
+    def _shade(self, inputs: ShadingInputs, normals: FloatArray, shape: FloatArray) -> FloatArray:
         table = inputs.table
         fit = hinges(table.eta, self.hinges)
-        arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
-        constants = _constants(table, self.area)
-        return _exitance(*arguments, fit.corners, fit.weights, *constants, start, stop)
+        arguments = (inputs.points, normals, shape, inputs.lights)
+        return _exitance(*arguments, fit.corners, fit.weights, *_constants(table, self.area))
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
@@ -92,35 +92,38 @@ def _exitance(
     length: FloatArray,
     rows: FloatArray,
     steps: FloatArray,
-    start: int,
-    stop: int,
 ) -> FloatArray:
-    out = np.zeros((len(points), stop - start))
+    out = np.zeros((len(points), 3))
     for block in prange((len(points) + BLOCK - 1) // BLOCK):
         first = block * BLOCK
         count = min(BLOCK, len(points) - first)
         cosine, kappa, strength = np.empty(count), np.empty(count), np.empty(count)
         for light in range(len(lights)):
             x, y, z, steady = light_at(lights, light, 0.0, 0.0, 0.0)
-            for k in range(count):
-                i = first + k
-                strength[k] = steady
-                if not is_directional(lights, light):
-                    x, y, z, strength[k] = light_at(
-                        lights, light, points[i, 0], points[i, 1], points[i, 2]
-                    )
-                cosine[k] = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
-                kappa[k] = bending(shape, i, x, y, z)
-            for c in range(start, stop):
+            known = -1
+            for c in range(3):
                 if lights[light, 8 + c] == 0.0:
                     continue
+                own = min(c, len(normals) - 1)  # one surface for all channels, or one for each
+                if own != known:
+                    known, facing, bent = own, normals[own], shape[own]
+                    for k in range(count):
+                        i = first + k
+                        strength[k] = steady
+                        if not is_directional(lights, light):
+                            x, y, z, strength[k] = light_at(
+                                lights, light, points[i, 0], points[i, 1], points[i, 2]
+                            )
+                        cosine[k] = facing[i, 0] * x + facing[i, 1] * y + facing[i, 2] * z
+                        kappa[k] = bending(bent, i, x, y, z)
                 glow = even_forms(weights, corners, cosine, kappa, length[c], rows, steps, c)
                 for k in range(count):
-                    out[first + k, c - start] += lights[light, 8 + c] * strength[k] * glow[k]
-        for i in range(first, first + count):
-            trace, squares = invariants(shape, i)
-            for c in range(start, stop):
+                    out[first + k, c] += lights[light, 8 + c] * strength[k] * glow[k]
+        for c in range(3):
+            bent = shape[min(c, len(normals) - 1)]
+            for i in range(first, first + count):
+                trace, squares = invariants(bent, i)
                 # 3 k1^2 + 2 k1 k2 + 3 k2^2 = 2 (k1^2 + k2^2) + (k1 + k2)^2.
                 second = area[c] * (2.0 * squares + trace * trace)
-                out[i, c - start] *= total[c] / (1.0 + second)
+                out[i, c] *= total[c] / (1.0 + second)
     return out

@@ -84,6 +84,19 @@ def test_a_changed_file_is_read_anew(tmp_path):
     assert len(pipeline.subject(session).mesh.vertices) == 4
 
 
+def test_a_picture_sees_a_file_as_it_was_when_it_began(tmp_path):
+    path = tmp_path / "m.off"
+    path.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    pipeline, session = Pipeline(), Session(mesh=str(path))
+    with pipeline.still():
+        first = pipeline.subject(session)
+        path.write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n")
+        with pipeline.still():
+            assert pipeline.subject(session) is first
+        assert pipeline.subject(session) is first
+    assert len(pipeline.subject(session).mesh.vertices) == 4
+
+
 def test_automatic_scale_of_shading_is_no_finer_than_the_glow_and_the_spacing():
     pipeline = Pipeline()
     fine = changed(estimator=Method("auto"), material="marble", mm_per_unit=10.0)

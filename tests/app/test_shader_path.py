@@ -12,8 +12,15 @@ from app.pipeline import Pipeline
 from app.render import fill, grab
 from app.session import Camera, Cone, Directional, Method, Point, Session
 from app.shader.drawing import PixelLight
-from app.shader.look import HALF, MOST_LIGHTS, look_of, unsupported
+from app.shader.look import MOST_LIGHTS, look_of, unsupported
+from app.shader.table import BEND, COLUMNS, MOST, ROWS, halfway, response
+from app.shader.vertices import forms
 from lutcore.baking import bake
+from lutcore.color import srgb_encode
+from lutcore.convexity import bending, convex_part
+from lutcore.fresnel import hinges
+from lutcore.lut import even_forms
+from lutcore.materials import materials
 
 LIGHTS = (
     Directional((0.9, 0.3, 0.3), (1.0, 0.9, 0.8), "camera"),
@@ -90,9 +97,8 @@ class Drawn:
         return grab(self.window, self.session.size).astype(int)
 
     def shaded(self) -> PixelLight:
-        light = PixelLight(self.look, [(self.actor, None)], self.origin)
-        light.move(self.session, self.made.camera, self.made.exposure)
-        return light
+        made, actors = self.made, [(self.actor, None)]
+        return PixelLight(self.look, actors, self.origin, self.session, made.camera, made.exposure)
 
 
 def _inside(image):
@@ -118,6 +124,23 @@ def test_pixels_are_those_of_vertices_on_a_fine_mesh(torus, pipeline, case) -> N
     assert np.abs(vertex - pixel)[:120][inside].max() <= BYTES
 
 
+@pytest.mark.parametrize("material", materials())
+def test_all_materials_where_curvature_is_strong_and_lights_are_many(
+    torus, pipeline, material
+) -> None:
+    lights = (*LIGHTS, Directional((-0.8, 0.1, -0.3), (0.5, 0.7, 0.9)), *LIGHTS[1:])
+    session = _session(torus[0], material=material, scale=0.3, mm_per_unit=0.7, lights=lights)
+    with offscreen_window(session.size, 0) as window:
+        drawn = Drawn(window, session, pipeline)
+        # The bend of the outer half is one in at least one channel of most: E2 is at its limit.
+        vertex = drawn.pixels()
+        drawn.shaded()
+        pixel = drawn.pixels()
+    inside = _inside(vertex)
+    assert inside.mean() > 0.2 and np.ptp(vertex[:120][inside]) > 50
+    assert np.abs(vertex - pixel)[:120][inside].max() <= BYTES
+
+
 def test_the_colours_of_a_file_are_in_it(torus, pipeline) -> None:
     session = _session(torus[1], scale=0.3)
     with offscreen_window(session.size, 0) as window:
@@ -125,13 +148,14 @@ def test_the_colours_of_a_file_are_in_it(torus, pipeline) -> None:
         vertex = drawn.pixels()
         drawn.shaded()
         inside = _inside(vertex)
-        assert "albedo" in drawn.look.attributes
+        assert np.ptp(vertex[:120][inside].astype(float) @ (1.0, -1.0, 0.0)) > 20
         assert np.abs(vertex - drawn.pixels())[:120][inside].max() <= BYTES
 
 
 def test_a_movement_sends_uniforms_only_and_shows_what_would_be_computed(torus, pipeline) -> None:
-    session = _session(torus[0], scale=0.3, exposure=2.0)
-    moved = replace(session, lights=LIGHTS, camera=PARALLEL)
+    session = _session(torus[0], scale=0.3, exposure=2.0, lights=LIGHTS)
+    turned = [replace(LIGHTS[0], direction=(0.2, 0.9, 0.4)), replace(LIGHTS[1], position=(1, 2, 5))]
+    moved = replace(session, lights=(*turned, LIGHTS[2]), camera=PARALLEL)
     with offscreen_window(session.size, 0) as window:
         drawn = Drawn(window, session, pipeline)
         light = drawn.shaded()
@@ -159,21 +183,75 @@ def test_what_is_taken_off_leaves_the_colours_of_vertices(torus, pipeline) -> No
         np.testing.assert_array_equal(drawn.pixels(), before)
 
 
+def test_lights_of_other_kinds_are_followed_too(torus, pipeline) -> None:
+    session = _session(torus[0], scale=0.3, exposure=1.0, lights=LIGHTS[:1])
+    for lights in (LIGHTS[1:], LIGHTS[::-1], LIGHTS[:1]):
+        with offscreen_window(session.size, 0) as window:
+            drawn = Drawn(window, session, pipeline)
+            light = drawn.shaded()
+            drawn.pixels()
+            again = replace(session, lights=lights)
+            light.move(again, drawn.made.camera, 1.0)
+            pixel = drawn.pixels()
+        with offscreen_window(session.size, 0) as window:
+            vertex = Drawn(window, again, pipeline).pixels()
+        assert np.abs(vertex - pixel)[:120][_inside(vertex)].max() <= BYTES
+
+
+def _looked_up(cells, span, a, b, channel):
+    """Do what the shader does."""
+    column = COLUMNS / 2 * (1.0 + (BEND + MOST) / MOST * a / (BEND + np.abs(a)))
+    row = np.minimum(ROWS * np.sqrt(b) / (span + np.sqrt(b)), ROWS - 1e-3)
+    i, j = np.floor(column).astype(int), np.floor(row).astype(int)
+    f, g = column - i, row - j
+    k = np.moveaxis(cells[j + ROWS * channel, i].astype(float), -1, 0)
+    return (1.0 + b) * (k[0] + f * k[1] + g * (k[2] + f * k[3]))
+
+
+@pytest.mark.parametrize("count", [1, 3, 4, 8])
 @pytest.mark.parametrize("profile", ["jensen2001", "burley2015", "deon2012"])
-@pytest.mark.parametrize("material", ["skin1", "marble", "skimmilk"])
-def test_lines_between_the_samples_are_psi(pipeline, material, profile) -> None:
-    session = Session(mesh="sample:sphere", material=material, profile=Method(profile), scale=0.3)
-    made = look_of(session, pipeline, np.eye(3))
-    x = np.random.default_rng(0).uniform(1e-3, 1.0, 20_000)
-    knots = np.linspace(0.0, 1.0, made.table.shape[1])
-    table = bake(material, profile=profile)
-    for channel in range(3):
-        b = x / HALF
-        # Below the horizon there is b psi(|a|/b) alone.
-        shone = table.evaluate(x - 1.0, b / table.mean_free_path[channel])[:, channel]
-        psi = shone / table.total[channel] / b
-        # A twentieth of a byte where sRGB is steepest: 12.92 x 255 x 1e-5 is 0.03.
-        np.testing.assert_allclose(np.interp(x, knots, made.table[channel]), psi, atol=1e-5)
+def test_one_look_up_is_the_response_of_every_material(profile, count) -> None:
+    rng = np.random.default_rng(0)
+    a = np.concatenate([rng.uniform(-1, 1, 20_000), rng.normal(0, 0.05, 20_000).clip(-1, 1)])
+    b = 10.0 ** rng.uniform(-5, 1.5, len(a))
+    for material in materials():
+        table = bake(material, profile=profile)
+        fit = hinges(table.eta, count)
+        cells, span = response(table, fit), halfway(table)
+        for channel in range(3):
+            arguments = (table.rows, table.inverse_step, channel)
+            exact = even_forms(fit.weights, fit.corners, a, b, 1.0, *arguments)
+            seen = _looked_up(cells, span[channel], a, b, channel)
+            # The least area that the model divides by: of a cylinder.
+            area = 1.0 + 3.0 / 16.0 * table.mean_square[channel] * b * b
+            # Of the half byte that BYTES leaves; the more light, the more of it is seen.
+            for exposure, most in ((1.0, 0.45), (3.0, 0.7)):
+                bytes_ = [255.0 * srgb_encode(exposure * one / area) for one in (exact, seen)]
+                assert np.abs(np.subtract(*bytes_)).max() < most, (material, channel)
+
+
+def test_two_by_two_numbers_are_the_curvature_tensor() -> None:
+    rng = np.random.default_rng(0)
+    n, w = rng.normal(size=(2, 1000, 3))
+    n[:4] = (0, 0, 1), (0, 0, -1), (1, 0, 0), (0, 1, -1e-32)
+    n, w = (one / np.linalg.norm(one, axis=1, keepdims=True) for one in (n, w))
+    n = n.astype(np.float32).astype(float)
+    d1 = np.cross(n, rng.normal(size=n.shape))
+    d1 /= np.linalg.norm(d1, axis=1, keepdims=True)
+    k1, k2 = rng.normal(1.0, 1.0, (2, len(n)))
+    shape = convex_part(k1, k2, d1, np.cross(n, d1), 1.0)
+    tt, uu, tu = forms(n, shape).T
+    # The frame of the shader.
+    sign = np.where(n[:, 2] >= -1e-30, 1.0, -1.0)
+    a = -1.0 / (sign + n[:, 2])
+    b = n[:, 0] * n[:, 1] * a
+    t = np.stack([1 + sign * n[:, 0] ** 2 * a, sign * b, -sign * n[:, 0]], 1)
+    u = np.stack([b, sign + n[:, 1] ** 2 * a, -n[:, 1]], 1)
+    p, q = (t * w).sum(1), (u * w).sum(1)
+    bend = np.hypot(tt * p + tu * q, tu * p + uu * q)
+    exact = [bending(shape, i, *w[i]) for i in range(len(n))]
+    # Normals in single precision are off the tangent plane by 6e-8.
+    np.testing.assert_allclose(bend, exact, atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from lutcore.detail import Detail
 from lutcore.lights import DirectionalLight
-from lutcore.shading import shade
+from lutcore.shading import ShadingModel, shade, shading_inputs
+from plugins.shading.curvature_lut import CurvatureLut
 from tests import numpy_shading
 from tests.bench.shading_accuracy import ENERGY_RATIOS, RATIOS, model_energies, model_errors
 from tests.bench.shading_speed import LIGHTS
@@ -70,3 +72,19 @@ def test_more_hinges_come_closer_to_the_true_sphere_when_it_is_large() -> None:
         for count in (1, 2, 4, 8, 16)
     ]
     assert errors == sorted(errors, reverse=True)
+
+
+@pytest.mark.parametrize("lights", [LIGHTS, [DirectionalLight((1.0, 0.2, 0.3), (0.0, 2.0, 0.0))]])
+@pytest.mark.parametrize("area", ["curved", "flat"])
+def test_channels_at_once_are_channels_one_by_one_to_the_last_bit(area: str, lights) -> None:
+    mesh, curvatures = torus(1800)
+    rng = np.random.default_rng(0)
+    inputs = shading_inputs(mesh, curvatures, "skin1", lights)
+    tilted = inputs.normals + 0.1 * rng.normal(size=(3, *inputs.normals.shape))
+    tilted /= np.linalg.norm(tilted, axis=2, keepdims=True)
+    shapes = inputs.shape * rng.uniform(0.5, 2.0, (3, len(inputs.shape), 1))
+    seen = Detail(tilted, shapes, inputs.normals, np.ones(3))
+    model = CurvatureLut(area=area)
+    found = model.shade_detail(inputs, seen)
+    assert found.max() > 0.0
+    np.testing.assert_array_equal(found, ShadingModel.shade_detail(model, inputs, seen))

@@ -5,6 +5,7 @@ import pytest
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
 
+from app.gui.coarse import coarse
 from app.gui.status import Status
 from app.session import Camera, Method, Session
 from tests.app.gui.conftest import pixels, settled
@@ -111,3 +112,60 @@ def test_computing_is_measured(window) -> None:
 
     made = window.controller.outcome.composition
     assert 0.0 < step_seconds(made, window.controller.pipeline) < 60.0
+
+
+def test_the_first_frame_at_pixels_is_in_its_colours(window, qtbot, monkeypatch) -> None:
+    """Whoever draws first after the switch, and before anything else is told, draws the picture."""
+    vertex, first = pixels(window).astype(int), []
+    shade = window.canvas.shade_by_pixel
+
+    def shade_and_look(look) -> None:
+        shade(look)
+        if look is not None:
+            first.append(pixels(window).astype(int))
+
+    monkeypatch.setattr(window.canvas, "shade_by_pixel", shade_and_look)
+    _by_pixel(qtbot, window)
+    assert len(first) == 1
+    mesh = (vertex != vertex[2, 2]).any(axis=2)
+    assert (first[0] != vertex).any()
+    assert np.median(np.abs(first[0] - vertex)[mesh]) <= 1
+    np.testing.assert_array_equal(first[0], pixels(window))
+
+
+@pytest.mark.parametrize("standing_in", [True, False])
+def test_a_mesh_that_is_slow_to_draw_is_not_drawn_for_the_race(
+    open_window, qtbot, monkeypatch, standing_in
+) -> None:
+    window = open_window(Session(mesh="sample:sphere"))
+    canvas, visible, screens = window.canvas, [], []
+    mesh = window.controller.outcome.subject.mesh
+    canvas.give_coarse(coarse(mesh, 500) if standing_in else None)
+    before = pixels(window)
+    fine, show, draw = canvas.drawn[0].actor, canvas._stand_in.show, canvas.draw_unseen
+
+    def screen():
+        return window.screen().grabWindow(canvas.winId()).toImage()
+
+    def shown(drawn, on) -> None:
+        show(drawn, on)
+        visible.append((on, fine.GetVisibility()))
+
+    def drawn() -> None:
+        draw()
+        screens.append(screen())
+
+    on_screen = screen()
+    monkeypatch.setattr(canvas._stand_in, "show", shown)
+    monkeypatch.setattr(canvas, "draw_unseen", drawn)
+    monkeypatch.setattr(type(canvas), "seconds", property(lambda _: 0.7))
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: -1e3)
+    window.qactions["view.shade_automatic"].trigger()
+    qtbot.waitUntil(lambda: "each step" in window.pixel_path.reason, timeout=60_000)
+    np.testing.assert_array_equal(pixels(window), before)
+    if standing_in:
+        assert visible == 6 * [(True, 0), (False, 1)]
+        assert screens == 6 * [on_screen]
+    else:
+        assert not visible and not screens
+        assert "too slow to compare" in window.pixel_path.reason
