@@ -153,6 +153,7 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
     model = pipeline.settled(session, session.model, axes)
     inputs = pipeline.inputs(session, axes)
     seen, bent = inputs.detail, isinstance(model, CurvatureLut)
+    table = inputs.baked(model.samples) if isinstance(model, CurvatureLut) else inputs.table
     attributes: dict[str, SingleArray] = {}
     if seen is None:
         attributes["facing0"] = _single(inputs.normals)
@@ -166,7 +167,6 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
     color = albedo(pipeline.subject(session)) if session.albedo else None
     if color is not None:
         attributes["albedo"] = _single(color)
-    table = inputs.table
     return PixelLook(
         session,
         session.model.name,

@@ -6,6 +6,7 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
+from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.fresnel import hinges
@@ -42,6 +43,7 @@ class CurvatureLut(ShadingModel):
         ("curved", "flat"),
         "Area that light enters by: corrected to second order, or the tangent plane's.",
     )
+    samples: int = samples_parameter()
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
@@ -52,7 +54,7 @@ class CurvatureLut(ShadingModel):
         return self._channels(inputs, channel, channel + 1)[:, 0]
 
     def _channels(self, inputs: ShadingInputs, start: int, stop: int) -> FloatArray:
-        table = inputs.table
+        table = inputs.baked(self.samples)
         fit = hinges(table.eta, self.hinges)
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
         constants = _constants(table, self.area)
