@@ -3,9 +3,9 @@
 1. On held-out shapes, under random materials, sizes and lights: share of the values (vertex and
    channel) whose true error is below the predicted one, and the median of predicted over true
    where either is above 1e-4 R_d: below that both are right, and the reference, brute force over
-   all triangles, resolves no more. `noisy scan` is a mesh with noise along its normals, shaded with
-   curvature and normals that were estimated from it, against the light gathered over the noisy
-   mesh itself.
+   all triangles, resolves no more. `noisy` is a torus with noise along its normals, shaded with
+   what was estimated from it, for each channel or at one scale, against the light gathered over
+   the noisy mesh itself; `scan` and `other scan` are sample scans, away from their borders.
 2. Seeded scenes: how often the chosen model meets the tolerance, and how often a local model that
    is adequate as well would have cost less by more than a fifth. Both are judged over vertices by
    brute force, by other vertices than those `choose` checks at: --judged of them, and all where the
@@ -19,6 +19,7 @@ and noise alone.
 
 import argparse
 import json
+import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,21 +31,28 @@ from lutcore.blend import at
 from lutcore.choice import choose
 from lutcore.costs import Candidate, candidates, costs
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.detail import detail_seen
 from lutcore.estimation import principal_curvatures
-from lutcore.gather.exitance import exact
-from lutcore.geometry import area_normals, vertex_corners
+from lutcore.gather.exitance import exact, hierarchy
 from lutcore.lights import DirectionalLight
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
+from lutcore.open_mesh import light_lost
 from lutcore.prediction import WEIGHTS, Knowledge, Scene
+from lutcore.progress import silent
 from lutcore.scale import shading_scale
 from lutcore.shading import ShadingInputs, exitance, shading_inputs
 from lutcore.tolerance import Tolerance, relative
+from tests.bumps import bare
 
 FloatArray = NDArray[np.float64]
 MATERIALS = ("skin1", "skin2", "marble", "ketchup", "apple", "cream", "potato", "wholemilk")
 # Smallest radius of curvature in diffusion lengths of the middle channel.
 SIZES = (2.0, 60.0)
+# Millimetres in a unit of the sample scans.
+SCAN_SIZES = (1.0, 10.0)
+# The gathered light of meshes that are measured errs by less than a thousandth of this R_d.
+REFERENCE = 3e-4
 TOLERANCES = (0.004, 0.1)
 COVERED, WIDE, SEEN = 0.95, 5.0, 1e-4
 NEAR = 0.25  # of the logarithm of score over tolerance
@@ -88,6 +96,9 @@ def held_out(name: str, count: int) -> Shape:
     return smooth(analytic.ellipsoid(count, axes=axes[name]))
 
 
+# Noisy tori: whether what each channel's light sees is shaded, as by default, or one scale.
+NOISY = {"noisy, 1 scale": False, "noisy": True}
+SCANS = {"scan": "marble-face-raw", "other scan": "marble-face"}
 HELD_OUT = ("2:1 long", "4:1 long", "4:1 flat", "4:2:1", "cylinder", "torus")
 
 
@@ -134,19 +145,43 @@ def case(shape: Shape, generator: np.random.Generator, points: int) -> Case:
     return Case(inputs, truth, chosen, Scene.of(inputs, curvatures).at(chosen))
 
 
-def noisy(generator: np.random.Generator, points: int, count: int) -> Case:
+def noisy(generator: np.random.Generator, points: int, count: int, by_channel: bool) -> Case:
     """Return a noisy scan: what is known of it is estimated, the truth is gathered from it."""
     body = analytic.torus(count, irregular=True, major=2.4, minor=1.0)
     mesh = body.noisy(0.1, int(generator.integers(1 << 30)))
     of = material(str(generator.choice(MATERIALS)))
-    size, lit = size_in_mm(body.truth, of, generator), [light(generator)]
-    raw = replace(body.truth, normals=area_normals(mesh, vertex_corners(mesh)))
-    own = shading_inputs(mesh, raw, of, lit, size)
-    scale = shading_scale(mesh, own.table.glow / size)
-    found = principal_curvatures(mesh, "auto", scale)
-    inputs = shading_inputs(mesh, found, of, lit, size)
-    chosen = generator.choice(len(mesh.vertices), points, replace=False)
-    truth = exact(own, mesh.vertices[chosen])
+    return measured(mesh, of, size_in_mm(body.truth, of, generator), generator, points, by_channel)
+
+
+def scanned(name: str, generator: np.random.Generator, points: int) -> Case:
+    """Return a sample scan as `shade` has it, where its borders take no light."""
+    from app.loading import load_mesh
+    from app.samples import sample
+
+    mesh = load_mesh(sample(name).path).mesh
+    of = material(str(generator.choice(MATERIALS)))
+    size = float(np.exp(generator.uniform(*np.log(SCAN_SIZES))))
+    return measured(mesh, of, size, generator, points, True)
+
+
+def measured(
+    mesh: TriangleMesh,
+    of: Material,
+    size: float,
+    generator: np.random.Generator,
+    points: int,
+    by_channel: bool,
+) -> Case:
+    """Return a scene whose curvature is estimated, for all channels at one scale or for each."""
+    own = shading_inputs(mesh, bare(mesh), of, [light(generator)], size)
+    found = principal_curvatures(mesh, "auto", shading_scale(mesh, own.table.glow / size))
+    detail = detail_seen(mesh, of, size) if by_channel else None
+    given = shading_inputs(mesh, found, of, [], size, detail=detail)
+    inputs = replace(given, lights=own.lights)
+    held = np.any(inputs.normals != 0.0, axis=1) & (light_lost(inputs) < SEEN)
+    where = np.flatnonzero(held)
+    chosen = generator.choice(where, min(points, len(where)), replace=False)
+    truth = hierarchy(own, REFERENCE, silent).at(own.points[chosen], silent)
     return Case(inputs, truth, chosen, Scene.of(inputs, found).at(chosen))
 
 
@@ -154,7 +189,7 @@ def true_and_predicted(one: Candidate, of: Case) -> tuple[FloatArray, FloatArray
     """Return both errors of a local model at the chosen vertices, in R_d."""
     predicted = one.model.predicted_error(of.scene)
     assert predicted is not None
-    given = one.model.shade(at(of.inputs, of.chosen))
+    given = exitance(one.model, at(of.inputs, of.chosen))
     return np.abs(given - of.truth) / of.inputs.table.total, predicted
 
 
@@ -169,14 +204,17 @@ def coverage(seed: int, draws: int, points: int, count: int) -> dict[str, dict[s
     """Return share covered and median ratio by shape and model."""
     found: dict[str, dict[str, list[float]]] = {}
     models = predictable()
-    for row, name in enumerate((*HELD_OUT, "noisy scan")):
+    for row, name in enumerate((*HELD_OUT, *NOISY, *SCANS)):
         generator = np.random.default_rng((seed, row))
-        if name == "noisy scan":
-            cases = [noisy(generator, points, count) for _ in range(draws)]
+        if name in NOISY:
+            cases = [noisy(generator, points, count, NOISY[name]) for _ in range(draws)]
+        elif name in SCANS:
+            cases = [scanned(SCANS[name], generator, points) for _ in range(draws)]
         else:
             shape = held_out(name, count)
             cases = [case(shape, generator, points) for _ in range(draws)]
         found[name] = {}
+        print(name, file=sys.stderr)
         for one in models:
             pairs = [true_and_predicted(one, of) for of in cases]
             true = np.concatenate([pair[0].ravel() for pair in pairs])
@@ -259,6 +297,7 @@ def scenes(seed: int, total: int, points: int, count: int, checked: bool) -> dic
         found["blended"] += choice.blend is not None
         found["gathered"] += not choice.model.local
         spent.append(choice.check_milliseconds)
+        print(f"{number + 1} of {total}: {found}", file=sys.stderr)
     return {
         "scenes": total,
         **found,
@@ -277,7 +316,7 @@ def tune(seed: int, total: int, points: int, count: int) -> None:
     for number in range(total):
         generator = np.random.default_rng((seed, 777, number))
         if number % 4 == 3:
-            cases.append(noisy(generator, points, count))
+            cases.append(noisy(generator, points, count, False))
         else:
             cases.append(case(any_shape(generator, count), generator, points))
     print(f"{'':28}" + "".join(f"{name[:7]:>9}" for name in ("flat", *WEIGHTS)))
@@ -340,7 +379,9 @@ def main() -> None:
     if options.draws:
         table = coverage(options.seed, options.draws, options.points, options.count)
     checked = not options.predicted_only
-    choices = scenes(options.seed, options.scenes, options.judged, options.count, checked)
+    choices: dict[str, object] = {}
+    if options.scenes:
+        choices = scenes(options.seed, options.scenes, options.judged, options.count, checked)
     if options.json:
         print(json.dumps({"prediction": table, "choice": choices}))
         return
