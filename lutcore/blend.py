@@ -26,7 +26,7 @@ class Blend(ShadingModel):
     change of w alone adds to the picture between two vertices is at most |dw| (e_cheap + e_good).
 
     Tolerances of colour have no blend: what an error does to a colour takes eight CIEDE2000
-    differences at each vertex, some 10 us, and the costliest local model takes 1.5 us.
+    differences at each vertex, 5 to 10 us, and the costliest local model takes 1.5 us.
 
     Parameters
     ----------

@@ -259,7 +259,7 @@ class Judgement:
         return self.tolerance.score(relative(off, self.irradiance))
 
 
-def scenes(seed: int, total: int, points: int, count: int, checked: bool) -> dict[str, object]:
+def scenes(seed: int, numbers: range, points: int, count: int, checked: bool) -> dict[str, object]:
     """Return how the choices in seeded scenes turned out.
 
     Cost is that of each picture; what the check takes is paid once, and is told apart.
@@ -268,7 +268,7 @@ def scenes(seed: int, total: int, points: int, count: int, checked: bool) -> dic
     found: dict[str, int] = dict.fromkeys(COUNTED, 0)
     worst, spent = 0.0, []
     losers: list[str] = []
-    for number in range(total):
+    for number in numbers:
         generator = np.random.default_rng((seed, 100, number))
         shape = any_shape(generator, count)
         inputs = scene(shape, generator, int(generator.integers(1, 3)))
@@ -297,9 +297,9 @@ def scenes(seed: int, total: int, points: int, count: int, checked: bool) -> dic
         found["blended"] += choice.blend is not None
         found["gathered"] += not choice.model.local
         spent.append(choice.check_milliseconds)
-        print(f"{number + 1} of {total}: {found}", file=sys.stderr)
+        print(f"scene {number}: {found}", file=sys.stderr)
     return {
-        "scenes": total,
+        "scenes": len(numbers),
         **found,
         "worst_over_tolerance": worst,
         "check_milliseconds_median": float(np.median(spent)),
@@ -365,6 +365,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--draws", type=int, default=12, help="scenes for each shape; 0: none")
     parser.add_argument("--scenes", type=int, default=100)
+    parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--points", type=int, default=200, help="vertices with a truth")
     parser.add_argument("--judged", type=int, default=2000, help="vertices that judge a choice")
     parser.add_argument("--predicted-only", action="store_true", help="choose without the check")
@@ -381,7 +382,8 @@ def main() -> None:
     checked = not options.predicted_only
     choices: dict[str, object] = {}
     if options.scenes:
-        choices = scenes(options.seed, options.scenes, options.judged, options.count, checked)
+        numbers = range(options.first, options.first + options.scenes)
+        choices = scenes(options.seed, numbers, options.judged, options.count, checked)
     if options.json:
         print(json.dumps({"prediction": table, "choice": choices}))
         return

@@ -139,6 +139,12 @@ def test_borders_are_left_out() -> None:
     assert "borders" in tiny.coverage.reason
 
 
+def test_of_meshes_too_large_to_gather_from_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lutcore.checking._MOST", 99)
+    check = Check(inputs_on(analytic.sphere(100)), Tolerance(0.02), ONE)
+    assert "more than 99 vertices" in check.coverage.reason
+
+
 def test_without_light_there_is_nothing_to_check() -> None:
     check = Check(inputs_on(analytic.sphere(100), lit=False), Tolerance(0.02), ONE)
     assert check.coverage.reason == "there is no light"
