@@ -13,11 +13,6 @@ from lutcore.shading import ShadingInputs
 from lutcore.tolerance import Tolerance
 from lutcore.visibility import ShadowForecast, forecast
 
-_TABLES = (8, 16, 32, 64, 128)
-_FINE = 256
-# Of the tolerance: the table must not matter beside the model.
-_TABLE_SHARE = 0.1
-
 
 @dataclass(frozen=True)
 class Needs:
@@ -26,10 +21,7 @@ class Needs:
     Parameters
     ----------
     choice : Choice
-        The model, with the ladder.
-    samples : int
-        Samples of psi that keep a table's error below a tenth of the tolerance; `relative` is
-        taken as .01 where the tolerance is one of colour.
+        The model, with the ladder and the size of its table.
     shadows : ShadowForecast or None
         What cast shadows would change; None without lights.
     scale : float or None
@@ -42,7 +34,6 @@ class Needs:
     """
 
     choice: Choice
-    samples: int
     shadows: ShadowForecast | None
     scale: float | None
     glow: float
@@ -55,6 +46,7 @@ def needs(
     axes: FloatArray,
     tolerance: Tolerance,
     again: bool = False,
+    checked: bool = True,
 ) -> Needs:
     """Find out what a session needs.
 
@@ -70,6 +62,8 @@ def needs(
         How wrong the picture may be.
     again : bool
         Whether to measure the costs of the models again.
+    checked : bool
+        Whether to check what is predicted at a sample of the vertices.
 
     Returns
     -------
@@ -85,49 +79,18 @@ def needs(
     """
     costs = measured(pipeline.progress, again)
     inputs = pipeline.inputs(session, axes)
-    choice = choose(inputs, tolerance, costs)
+    choice = choose(inputs, tolerance, costs, checked=checked)
     mesh = pipeline.subject(session).mesh
     shadows = None
     if len(inputs.lights):
         shadows = forecast(mesh, inputs.normals, inputs.lights)
     return Needs(
         choice=choice,
-        samples=samples(inputs, tolerance),
         shadows=shadows,
         scale=pipeline.scale(session),
         glow=pipeline.glow(session),
         tight=tight(inputs),
     )
-
-
-def samples(inputs: ShadingInputs, tolerance: Tolerance) -> int:
-    """Return how many samples of psi a scene needs.
-
-    Parameters
-    ----------
-    inputs : ShadingInputs
-        The scene.
-    tolerance : Tolerance
-        How wrong it may be.
-
-    Returns
-    -------
-    int
-        The least of 8, 16, 32, 64 and 128 whose table is off by less than a tenth of it.
-    """
-    from lutcore.baking import bake
-
-    allowed = _TABLE_SHARE * (tolerance.value if tolerance.metric == "relative" else 0.01)
-    bends = np.sqrt(np.square(inputs.shape[:, :3]).sum(axis=1))
-    kappa = max(float(np.percentile(bends, 99.0)) if len(bends) else 0.0, 1e-9)
-    a = np.linspace(-1.0, 1.0, 2001)
-    fine = bake(inputs.material, _FINE, inputs.profile)
-    for count in _TABLES[:-1]:
-        coarse = bake(inputs.material, count, inputs.profile)
-        off = np.abs(coarse.evaluate(a, kappa) - fine.evaluate(a, kappa)) / fine.total
-        if off.max() < allowed:
-            return count
-    return _TABLES[-1]
 
 
 def tight(inputs: ShadingInputs) -> dict[str, float]:

@@ -420,7 +420,10 @@ class Pipeline:
         ndarray, shape=(n, 3)
             Linear RGB; see `lutcore.shade`.
         """
-        key = ("exitance", session.shadows, *self._scene_key(session, model, axes))
+        from app.settling import taken
+
+        said = _key(taken(session, self, model, axes))
+        key = ("exitance", session.shadows, said, *self._scene_key(session, model, axes))
         return self.once(key, lambda: self._shade(session, model, axes))
 
     def _shade(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
@@ -468,7 +471,13 @@ class Pipeline:
         Returns
         -------
         ShadingModel
-            The model itself but for `auto`; see `app.settling` for its name.
+            The model itself but for `auto`, which is what the session says that it came to in this
+            scene, or is chosen; see `app.settling` for its name.
+
+        Raises
+        ------
+        ParameterError
+            If the session names a model, or a parameter, that does not exist.
         """
         from lutcore.parameters import create
         from lutcore.shading import AUTO, ShadingModel, model_registry
@@ -480,7 +489,11 @@ class Pipeline:
         if model.name != AUTO:
             return chosen.settled(self.inputs(session, axes))
         from app.costs import measured
+        from app.settling import model_of, taken
 
+        said = taken(session, self, model, axes)
+        if said is not None:
+            return model_of(said)
         measured(self.progress)  # once on this machine, not in each process
         key = ("settled", *self._scene_key(session, model, axes))
         return self.once(key, lambda: chosen.settled(self.inputs(session, axes)))

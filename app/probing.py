@@ -1,16 +1,12 @@
 """What is known of one point of a surface: its curvature with error bars, each model's colour."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.pipeline import Pipeline
 from app.session import Camera, Method, Session, Vector
-from lutcore.arrays import AnyArray, FloatArray
-
-if TYPE_CHECKING:
-    from lutcore.shading import ShadingInputs
+from lutcore.arrays import FloatArray
 
 COLUMNS = (
     "vertex",
@@ -176,6 +172,7 @@ def with_readings(
         With `readings`, the session's own model first.
     """
     from app.camera import axes
+    from lutcore.blend import at
     from lutcore.parameters import create
     from lutcore.prediction import Scene
     from lutcore.shading import exitance, model_registry, shading_models
@@ -187,7 +184,7 @@ def with_readings(
     chosen = np.array([found.vertex])
     scene = Scene.of(inputs, inputs.curvatures)
     irradiance, scene = scene.irradiance, scene.at(chosen)
-    here = _narrowed(inputs, chosen)
+    here = at(inputs, chosen)
     seen = _seen(session, pipeline, camera, found.vertex)
     others = [Method(name) for name in shading_models() if name != session.model.name]
     readings = []
@@ -201,21 +198,6 @@ def with_readings(
         error = None if errors is None else float(relative(errors, irradiance)[0])
         readings.append(_reading(method, light, light * seen, exposure, error))
     return replace(found, readings=tuple(readings))
-
-
-def _narrowed(inputs: "ShadingInputs", chosen: AnyArray) -> "ShadingInputs":
-    from lutcore.blend import at
-
-    here, detail = at(inputs, chosen), inputs.detail
-    if detail is None:
-        return here
-    few = replace(
-        detail,
-        normals=detail.normals[:, chosen],
-        shape=detail.shape[:, chosen],
-        bare=detail.bare[chosen],
-    )
-    return replace(here, detail=few)
 
 
 def _seen(session: Session, pipeline: Pipeline, camera: Camera, vertex: int) -> FloatArray:

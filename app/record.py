@@ -16,7 +16,7 @@ from app.picture import Picture
 from app.pipeline import Pipeline
 from app.render import Image
 from app.session import Camera, Session
-from app.settling import settled
+from app.settling import recorded, settled
 from lutcore.shading import AUTO
 
 # Whatever a pixel can depend on beside the session, the mesh and the driver.
@@ -88,7 +88,8 @@ class Record(msgspec.Struct, frozen=True):
     Parameters
     ----------
     session : Session
-        As it was asked for: it is what makes the picture again.
+        As it was asked for, with what the shading model `auto` came to: it is what makes the
+        picture again.
     resolved : Resolved
         What it came to.
     mesh : MeshFile
@@ -134,7 +135,7 @@ def record_of(session: Session, pipeline: Pipeline, made: Picture) -> Record:
     """
     subject = pipeline.subject(session)
     return Record(
-        session,
+        recorded(session, pipeline, axes(made.camera)),
         Resolved(
             made.camera,
             made.exposure,

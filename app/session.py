@@ -92,6 +92,45 @@ class Method(_Part, frozen=True):
         return f"{self.name} ({', '.join(values)})" if self.parameters else self.name
 
 
+class Settled(_Part, frozen=True):
+    """What the shading model ``auto`` came to in a scene; see `app.settling`.
+
+    `scene` tells one scene from another, empty for any; `method` is the model, `cheaper` the one
+    that takes its place where its predicted error is below `limit`.
+    """
+
+    method: Method
+    cheaper: Method | None = None
+    limit: Positive | None = None
+    scene: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.cheaper is None) != (self.limit is None):
+            raise ValueError("a cheaper model and its limit are given together")
+
+    @property
+    def label(self) -> str:
+        """The model in words."""
+        if self.cheaper is None:
+            return self.method.label
+        return f"{self.method.label}, {self.cheaper.label} where it suffices"
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as a script reads it.
+
+        Returns
+        -------
+        dict
+            model, parameters and blended_with: the name of the cheaper one or None.
+        """
+        return {
+            "model": self.method.name,
+            "parameters": self.method.parameters,
+            "blended_with": self.cheaper.name if self.cheaper else None,
+        }
+
+
 class Volume(_Part, frozen=True):
     """How a volume scan becomes a surface; a mesh takes no notice of it.
 
@@ -175,6 +214,8 @@ class Session(_Part, frozen=True):
     `mm_per_unit` None takes the sample's or the file's own scale, else 1 mm;
     `scale` is the length in mesh units that curvature is averaged over, None chooses it;
     `profile` is how light spreads in the material, the same for all models that are compared;
+    `settled` is what the model ``auto`` came to where the session was drawn: which model costs
+    least differs between machines, and each scene that is still the same keeps it;
     `shadows` says whether the surface casts shadows on itself, ``auto`` where they change much;
     `compared_by` says what `compared` names: shading models, estimators, whose `quantity` is
     shown, or materials; `wipe` shows two on one surface, the first left of this share of the
@@ -200,6 +241,7 @@ class Session(_Part, frozen=True):
     profile: Method = Method("jensen2001")
     shadows: Shadows = "off"
     model: Method = Method("curvature-lut")
+    settled: tuple[Settled, ...] = ()
     compared: tuple[Method, ...] = ()
     compared_by: ComparedBy = "model"
     wipe: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None

@@ -1,47 +1,24 @@
-"""Which model a scene was shaded with, where it was left open, in words and as data."""
+"""Which model a scene was shaded with, where it was left open: named, recorded and taken again."""
 
-from dataclasses import dataclass, fields
+import hashlib
+from dataclasses import fields
+from typing import TYPE_CHECKING
 
-from app.session import Method
+import msgspec
+import numpy as np
+from msgspec.structs import replace
+
+from app.contestants import alone
+from app.session import Directional, Method, Session, Settled
+from lutcore.arrays import FloatArray
 from lutcore.blend import Blend
-from lutcore.shading import ShadingModel, model_registry
+from lutcore.parameters import create
+from lutcore.shading import AUTO, ShadingModel, model_registry
 
+if TYPE_CHECKING:
+    from app.pipeline import Pipeline
 
-@dataclass(frozen=True)
-class Settled:
-    """The model that a scene is shaded with.
-
-    Parameters
-    ----------
-    method : Method
-        Its name, with the parameters that are not at their default.
-    cheaper : Method or None
-        The model that takes its place where that suffices.
-    """
-
-    method: Method
-    cheaper: Method | None = None
-
-    @property
-    def label(self) -> str:
-        """The model in words."""
-        if self.cheaper is None:
-            return self.method.label
-        return f"{self.method.label}, {self.cheaper.label} where it suffices"
-
-    def as_json(self) -> dict[str, object]:
-        """Return it as plain data.
-
-        Returns
-        -------
-        dict
-            model, parameters and blended_with: the name of the cheaper one or None.
-        """
-        return {
-            "model": self.method.name,
-            "parameters": self.method.parameters,
-            "blended_with": self.cheaper.name if self.cheaper else None,
-        }
+_DIGITS = 6
 
 
 def settled(model: ShadingModel) -> Settled:
@@ -55,11 +32,119 @@ def settled(model: ShadingModel) -> Settled:
     Returns
     -------
     Settled
-        Its name and parameters.
+        Its name, with the parameters that are not at their default.
     """
     if isinstance(model, Blend):
-        return Settled(_method(model.good), _method(model.cheap))
+        return Settled(_method(model.good), _method(model.cheap), model.limit)
     return Settled(_method(model))
+
+
+def model_of(one: Settled) -> ShadingModel:
+    """Return the model that was named.
+
+    Parameters
+    ----------
+    one : Settled
+        From `settled`.
+
+    Returns
+    -------
+    ShadingModel
+        The same.
+
+    Raises
+    ------
+    ParameterError
+        If a name does not exist here, or a parameter is out of range.
+    """
+    good = _created(one.method)
+    if one.cheaper is None or one.limit is None:
+        return good
+    return Blend(_created(one.cheaper), good, one.limit)
+
+
+def taken(
+    session: Session, pipeline: "Pipeline", model: Method, axes: FloatArray
+) -> Settled | None:
+    """Return what the session says that `auto` came to in its scene.
+
+    Parameters
+    ----------
+    session : Session
+        Everything but its own model is used.
+    pipeline : Pipeline
+        Where its mesh comes from.
+    model : Method
+        The shading model.
+    axes : ndarray, shape=(3, 3)
+        The camera's axes, for lights that move with it.
+
+    Returns
+    -------
+    Settled or None
+        None where it does not say so, or of another scene.
+    """
+    if model.name != AUTO or not session.settled:
+        return None
+    scene = _scene(session, pipeline, model, axes)
+    return next((one for one in session.settled if one.scene == scene), None)
+
+
+def recorded(session: Session, pipeline: "Pipeline", axes: FloatArray) -> Session:
+    """Return a session that says what `auto` came to, for machines where models cost otherwise.
+
+    Parameters
+    ----------
+    session : Session
+        Any session; what it says of scenes that it does not draw is left out.
+    pipeline : Pipeline
+        The one that drew it.
+    axes : ndarray, shape=(3, 3)
+        The camera's axes, for lights that move with it.
+
+    Returns
+    -------
+    Session
+        With an entry for each scene that is shaded with `auto`.
+
+    Raises
+    ------
+    MeshError, ParameterError
+        If it cannot be drawn.
+    """
+    found: dict[str, Settled] = {}
+    for one in alone(session):
+        if one.view != "curvature" and one.model.name == AUTO:
+            scene = _scene(one, pipeline, one.model, axes)
+            chosen = pipeline.settled(one, one.model, axes)
+            found[scene] = replace(settled(chosen), scene=scene)
+    return replace(session, settled=tuple(found.values()))
+
+
+def _scene(session: Session, pipeline: "Pipeline", model: Method, axes: FloatArray) -> str:
+    """Return what tells a scene from others on every machine, as a short hash."""
+    moving = any(isinstance(one, Directional) and one.frame == "camera" for one in session.lights)
+    parts = (
+        pipeline.subject(session).loaded.digest,
+        session.volume,
+        session.repairs,
+        pipeline.mm_per_unit(session),
+        session.material,
+        session.profile,
+        session.estimator,
+        session.scale,
+        session.lights,
+        model,
+        # + 0.0 makes -0.0 the same.
+        (np.round(axes, _DIGITS) + 0.0).tolist() if moving else None,
+    )
+    text = msgspec.json.encode(parts, order="sorted")
+    return hashlib.sha256(text).hexdigest()[:16]
+
+
+def _created(method: Method) -> ShadingModel:
+    plugin = model_registry.get(method.name)
+    return create(plugin, f"shading model {method.name!r}", dict(method.parameters))
 
 
 def _method(model: ShadingModel) -> Method:

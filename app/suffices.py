@@ -12,7 +12,7 @@ from lutcore.progress import Progress, silent, tell
 
 if TYPE_CHECKING:
     from app.picture import Composition
-    from lutcore.choice import Rung
+    from lutcore.judging import Rung
     from lutcore.shading import ShadingInputs
 
 # Okabe and Ito's colours, which those who see fewer colours can tell apart, cheapest model first.

@@ -11,6 +11,7 @@ from lutcore.keeping import kept
 from lutcore.lut import PsiTable
 from lutcore.materials import Material
 from lutcore.materials import material as built_in
+from lutcore.parameters import param
 from lutcore.plane import PlaneTable, tabulate
 
 BETA_FLOOR = 0.0037
@@ -23,6 +24,18 @@ a dipole of eta 1.3 that reflects 99 % has beta .0037. The lowest beta of their 
 """
 
 _SAMPLES = (8, 8192)
+
+
+def samples_parameter() -> Any:
+    """Declare how many samples the table of a model has.
+
+    Returns
+    -------
+    dataclasses.Field
+        For the plug-in's frozen dataclass; see `lutcore.shading.ShadingInputs.baked`.
+    """
+    doc = "Samples of psi in the table, 8 or more; 0: as many as the profile needs, 64 if a dipole."
+    return param(0, 0, 1024, "", doc)
 
 
 def bake(

@@ -25,6 +25,9 @@ class Blend(ShadingModel):
     at most (1 - w) e_cheap + w e_good, never more than the limit where e_good is not; what the
     change of w alone adds to the picture between two vertices is at most |dw| (e_cheap + e_good).
 
+    Tolerances of colour have no blend: what an error does to a colour takes eight CIEDE2000
+    differences at each vertex, 5 to 10 us, and the costliest local model takes 1.5 us.
+
     Parameters
     ----------
     cheap, good : ShadingModel
@@ -102,8 +105,16 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
     Returns
     -------
     ShadingInputs
-        Of m vertices, without visibility and detail.
+        Of m vertices, without visibility.
     """
+    detail = inputs.detail
+    if detail is not None:
+        detail = replace(
+            detail,
+            normals=detail.normals[:, chosen],
+            shape=detail.shape[:, chosen],
+            bare=detail.bare[chosen],
+        )
     return replace(
         inputs,
         points=inputs.points[chosen],
@@ -111,5 +122,5 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
         shape=inputs.shape[chosen],
         visibility=None,
         curvatures=None,
-        detail=None,
+        detail=detail,
     )

@@ -1,58 +1,18 @@
-"""The cheapest model that suffices for a scene: predicted errors, costs, and one sentence."""
+"""The cheapest model that suffices for a scene, and why."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from lutcore.arrays import FloatArray
-from lutcore.blend import Blend, at
-from lutcore.costs import PREDICTION, Candidate, Cost, candidates
+from lutcore.blend import Blend
+from lutcore.checking import Coverage
+from lutcore.costs import Candidate, Cost, candidates
 from lutcore.errors import ParameterError
-from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel, model_registry
-from lutcore.tolerance import Tolerance, color_differences, relative
-
-_SAMPLE = 2048
-_COLORS = 1024
-_COLORED_BY = "curvature-lut"
-# A blend must save this share of the cost to be worth two models.
-_WORTH = 0.1
-# Sizes of the body that are tried where no local model suffices.
-_LARGER = 2.0 ** (0.5 * np.arange(1, 15))
-
-
-@dataclass(frozen=True)
-class Rung:
-    """One model on the ladder.
-
-    Parameters
-    ----------
-    candidate : Candidate
-        The model.
-    median, p99 : float
-        Predicted error over the vertices, relative to R_d and the largest irradiance; nan where a
-        model predicts none.
-    score : float
-        What the tolerance is compared with, in its metric; nan where nothing is predicted.
-    share : float
-        Share of the vertices where the model's error is within the tolerance.
-    nanoseconds : float
-        For each vertex and light.
-    milliseconds : float
-        For this mesh and its lights.
-    adequate : bool
-        Whether the score is within the tolerance.
-    """
-
-    candidate: Candidate
-    median: float
-    p99: float
-    score: float
-    share: float
-    nanoseconds: float
-    milliseconds: float
-    adequate: bool
+from lutcore.judging import Judge, Rung
+from lutcore.shading import ShadingInputs, ShadingModel
+from lutcore.table_size import samples_needed, with_samples
+from lutcore.tolerance import Tolerance
 
 
 @dataclass(frozen=True)
@@ -65,33 +25,54 @@ class Choice:
         The ladder, cheapest first.
     chosen : Rung
         The cheapest adequate one; the most accurate where none is.
+    by_prediction : Rung
+        What would have been chosen by prediction alone, of the rungs that were climbed.
     blend : Blend or None
         A cheaper model mixed in where it suffices, if that pays.
     cheaper : Rung or None
         That model.
     milliseconds : float
-        Of what is chosen, blend included.
+        Of what is chosen, blend included, each time it shades; the check is paid once.
+    samples : int
+        Of the table of psi: as many as keep it from mattering.
     tolerance : Tolerance
         What was asked for.
-    sentence : str
-        The reason; empty where the ladder was not climbed to its end.
+    coverage : Coverage
+        Where models were checked, or why none was.
+    check_milliseconds : float
+        What the check took, once.
     enough : float or None
         Where no local model suffices, how many times as large the body must be for one.
     """
 
     rungs: tuple[Rung, ...]
     chosen: Rung
+    by_prediction: Rung
     blend: Blend | None
     cheaper: Rung | None
     milliseconds: float
+    samples: int
     tolerance: Tolerance
-    sentence: str
+    coverage: Coverage
+    check_milliseconds: float
     enough: float | None
 
     @property
     def model(self) -> ShadingModel:
-        """The model to shade with."""
-        return self.blend or self.chosen.candidate.model
+        """The model to shade with, its table included."""
+        return self.blend or with_samples(self.chosen.candidate.model, self.samples)
+
+    @property
+    def sentence(self) -> str:
+        """The reason in a sentence, of a ladder that was climbed to its end."""
+        from lutcore.reasons import reason
+
+        return reason(self)
+
+    @property
+    def overruled(self) -> bool:
+        """Whether the prediction alone would have chosen otherwise."""
+        return self.chosen.candidate != self.by_prediction.candidate
 
 
 def choose(
@@ -101,12 +82,17 @@ def choose(
     models: Sequence[Candidate] | None = None,
     seed: int = 0,
     whole: bool = True,
+    checked: bool = True,
 ) -> Choice:
-    """Choose the cheapest model whose predicted error is within a tolerance.
+    """Choose the cheapest model whose error is within a tolerance.
 
-    Errors are predicted on at most 2048 vertices, so that a choice costs the same on any mesh.
-    Models that predict no error are listed and never chosen. Without lights the error is that
-    under the worst one.
+    Errors are predicted on at most 2048 vertices, a bound that is often far above them, and then
+    local models are checked against light that is gathered at some thousand vertices over the
+    mesh's own triangles (`lutcore.checking`). One is taken if what was found is within the
+    tolerance at a confidence of 99 %; where nothing can be checked, because there is no light or
+    nothing of the mesh is far enough from its borders, if what is predicted is. Models that predict
+    no error are listed and never chosen. Without lights the error is that under the worst one.
+    Shadows are left out.
 
     Parameters
     ----------
@@ -119,10 +105,13 @@ def choose(
     models : sequence of Candidate, optional
         The models; all that can be run if not given.
     seed : int
-        Seed of the choice of vertices.
+        Seed of the choice of vertices: the same seed chooses the same on every machine where the
+        costs are in the same order.
     whole : bool
         Whether to climb the ladder to its end; if not, only as far as the choice, which is the
         same, and `enough` is not sought.
+    checked : bool
+        Whether to check; if not, what is predicted decides.
 
     Returns
     -------
@@ -133,12 +122,15 @@ def choose(
     ------
     ParameterError
         If the scene has no curvatures, or no model predicts its error.
+    CancelledError
+        If the progress of the inputs asked to stop.
     """
     if inputs.curvatures is None:
         raise ParameterError("choosing a model needs the curvatures, to predict errors from")
     if tolerance.metric != "relative" and not len(inputs.lights):
         raise ParameterError(f"{tolerance.metric} needs a light: without one there is no colour")
-    judge = _Judge(inputs, tolerance, costs, seed)
+    samples = samples_needed(inputs, tolerance)
+    judge = Judge(inputs, tolerance, costs, samples, seed, checked)
     every = candidates() if models is None else models
     rungs: list[Rung] = []
     for one in sorted(every, key=judge.milliseconds):
@@ -149,162 +141,23 @@ def choose(
     if not known:
         raise ParameterError("no model predicts its error, so that none can be chosen")
     adequate = [rung for rung in known if rung.adequate]
-    chosen = adequate[0] if adequate else min(known, key=lambda rung: rung.score)
+    chosen = adequate[0] if adequate else min(known, key=lambda rung: rung.best_score)
+    predicted = [rung for rung in known if rung.predicted]
+    by_prediction = predicted[0] if predicted else min(known, key=lambda rung: rung.score)
     blend, cheaper, spent = judge.blended(chosen, known)
     enough = None
     if whole and not any(rung.candidate.model.local for rung in adequate):
         enough = judge.enough([rung.candidate for rung in known])
-    choice = Choice(tuple(rungs), chosen, blend, cheaper, spent, tolerance, "", enough)
-    return replace(choice, sentence=_sentence(choice, known)) if whole else choice
-
-
-class _Judge:
-    def __init__(
-        self, inputs: ShadingInputs, tolerance: Tolerance, costs: Mapping[str, Cost], seed: int
-    ) -> None:
-        assert inputs.curvatures is not None
-        self.tolerance, self.costs = tolerance, costs
-        count = len(inputs.points)
-        self.count, self.lights = count, len(inputs.lights)
-        seen = np.flatnonzero(np.einsum("ij,ij->i", inputs.normals, inputs.normals) > 0.0)
-        if len(seen) > _SAMPLE:
-            seen = np.random.default_rng(seed).choice(seen, _SAMPLE, replace=False)
-            seen.sort()
-        self.scene = Scene.of(inputs, inputs.curvatures).at(seen)
-        self.irradiance = self.scene.irradiance
-        self.some = at(inputs, seen)
-        self.base: FloatArray | None = None
-
-    def milliseconds(self, one: Candidate) -> float:
-        each = self.costs[one.label].per_vertex(self.count, max(self.lights, 1))
-        return 1e-6 * each * self.count
-
-    def rung(self, one: Candidate) -> Rung:
-        spent, lights = self.milliseconds(one), max(self.lights, 1)
-        each = self.costs[one.label].per_vertex(self.count, lights) / lights
-        errors = one.model.predicted_error(self.scene)
-        if errors is None:
-            nothing = float("nan")
-            return Rung(one, nothing, nothing, nothing, 0.0, each, spent, False)
-        of_vertices = relative(errors, self.irradiance)
-        judged = self.judged(errors)
-        score = self.tolerance.score(judged)
-        return Rung(
-            candidate=one,
-            median=float(np.median(of_vertices)) if len(of_vertices) else 0.0,
-            p99=Tolerance(0.0).score(of_vertices),
-            score=score,
-            share=float(np.mean(judged <= self.tolerance.value)) if len(judged) else 1.0,
-            nanoseconds=each,
-            milliseconds=spent,
-            adequate=score <= self.tolerance.value,
-        )
-
-    def judged(self, errors: FloatArray) -> FloatArray:
-        """Return errors of vertices in the metric's unit."""
-        if self.tolerance.metric == "relative":
-            return relative(errors, self.irradiance)
-        some = slice(None, None, -(-len(errors) // _COLORS) or 1)
-        total = self.scene.table.total
-        return color_differences(self._exitance()[some], errors[some] * total)
-
-    def _exitance(self) -> FloatArray:
-        """Return what an accurate local model gives at the sample, for its colours."""
-        if self.base is None:
-            self.base = model_registry.get(_COLORED_BY)().shade(self.some)
-        return self.base
-
-    def blended(self, chosen: Rung, known: list[Rung]) -> tuple[Blend | None, Rung | None, float]:
-        """Return the blend that saves most, with what it costs in milliseconds."""
-        best: tuple[Blend | None, Rung | None, float] = None, None, chosen.milliseconds
-        if not (chosen.candidate.model.local and chosen.adequate):
-            return best
-        if self.tolerance.metric != "relative" or not self.lights:
-            return best
-        for rung in known:
-            model = rung.candidate.model
-            if not model.local or rung.milliseconds >= chosen.milliseconds:
-                continue
-            blend = Blend(model, chosen.candidate.model, self.tolerance.value)
-            weights = blend.weights(self.scene)
-            predicting = (
-                1e-6 * self.count * self.costs[PREDICTION].per_vertex(self.count, self.lights)
-            )
-            spent = predicting + float(
-                np.mean(weights < 1.0) * rung.milliseconds
-                + np.mean(weights > 0.0) * chosen.milliseconds
-            )
-            if spent < min(best[2], (1.0 - _WORTH) * chosen.milliseconds):
-                best = blend, rung, spent
-        return best
-
-    def enough(self, known: list[Candidate]) -> float | None:
-        """Return how many times as large the body must be for a local model."""
-        local = [one.model for one in known if one.model.local]
-        return next((float(f) for f in _LARGER if any(self._fits(m, f) for m in local)), None)
-
-    def _fits(self, model: ShadingModel, factor: float) -> bool:
-        of = self.scene
-        larger = replace(
-            of,
-            curvatures=of.curvatures / factor,
-            error=of.error / factor,
-            slope=of.slope / factor**2,
-            facet=of.facet * factor**2,
-            radius=of.radius * factor,
-        )
-        errors = model.predicted_error(larger)
-        return errors is not None and self.tolerance.score(self.judged(errors)) <= (
-            self.tolerance.value
-        )
-
-
-def _sentence(choice: Choice, known: list[Rung]) -> str:
-    chosen, tolerance = choice.chosen, choice.tolerance
-    label, value = chosen.candidate.label, f"{tolerance.value:g}"
-    measure = _MEASURES[tolerance.metric].format(value=value)
-    local = [rung for rung in known if rung.candidate.model.local]
-    if choice.blend is not None and choice.cheaper is not None:
-        saved = choice.milliseconds / chosen.milliseconds
-        return (
-            f"{choice.cheaper.candidate.label} suffices on {_percent(choice.cheaper.share)} of the "
-            f"vertices ({measure}), {label} is blended in on the rest, for {saved:.2g} times the "
-            f"cost of {label} alone"
-        )
-    if chosen.adequate and (chosen.candidate.model.local or any(one.adequate for one in local)):
-        cheaper = [rung for rung in local if rung.milliseconds < chosen.milliseconds]
-        reason = f"{label} is the cheapest that suffices ({measure}: {chosen.score:.2g} predicted)"
-        if not cheaper:
-            return reason + "; nothing is cheaper"
-        best = max(cheaper, key=lambda rung: rung.share)
-        part = f"{best.candidate.label} suffices on {_percent(best.share)} of the vertices"
-        return f"{reason}; {part}, and no cheaper one on more"
-    larger = (
-        f"a body {choice.enough:.2g} times as large would do with a local one"
-        if choice.enough
-        else "no larger body would do with a local one"
+    return Choice(
+        rungs=tuple(rungs),
+        chosen=chosen,
+        by_prediction=by_prediction,
+        blend=blend,
+        cheaper=cheaper,
+        milliseconds=spent,
+        samples=samples,
+        tolerance=tolerance,
+        coverage=judge.coverage,
+        check_milliseconds=1e3 * judge.seconds,
+        enough=enough,
     )
-    if not local:
-        return f"{label} is all there is to choose"
-    best = max(local, key=lambda rung: rung.share)
-    no_local = (
-        f"no local model suffices ({measure}): the widest, {best.candidate.label}, does on "
-        f"{_percent(best.share)} of the vertices"
-    )
-    if chosen.adequate:
-        return f"{no_local}; {label} suffices, gathering the light of the whole mesh; {larger}"
-    return f"nothing suffices, {label} comes closest ({chosen.score:.2g}); {no_local}; {larger}"
-
-
-_MEASURES = {
-    "relative": "99 % of vertices within {value} R_d",
-    "mean-de2000": "mean CIEDE2000 within {value}",
-    "p99-de2000": "99 % of vertices within a CIEDE2000 of {value}",
-}
-
-
-def _percent(share: float) -> str:
-    # No share is rounded to all or nothing.
-    percent = 100.0 * share
-    digits = 0 if 0.95 <= percent <= 99.0 or percent in (0.0, 100.0) else 1
-    return f"{percent:.{digits}f} %"

@@ -17,7 +17,9 @@ because the Laplacian of the normal is -grad(k1 + k2) - (k1^2 + k2^2) N. The ter
 - third: Y; concave: G of the concave part of S;
 - facet: the area of the mesh per vertex times k1^2 + k2^2, what lies between a facet and the body;
 - noise: G(b + error bar) - G(b); base: what references and tables resolve;
-- rough: faces that the normals given do not follow; tilt: the error bar times its scale;
+- rough: faces that the normals given do not follow; tilt: the error bar times its scale, where
+  one scale serves all channels; bumps: where each has its own, (2 rough h (1 - h))^(1/2), h the
+  share of the light that crosses facets: what is finer it blurs, what is coarser the normals show;
 - residue: E2/(1 + E2) alone, for tables that are off in the dark.
 
 psi is not looked up: psi(0)/(1 + u/L)^8, of the same value at 0 and the same integral, costs no
@@ -54,6 +56,7 @@ class Where(NamedTuple):
     facet: FloatArray
     rough: FloatArray
     tilt: FloatArray
+    bumps: FloatArray
     radius: float
 
 
@@ -128,7 +131,7 @@ def _read(curve: FloatArray, cosine: float) -> float:
 
 @compiled()
 def _error(
-    at: tuple[float, float, float, float, float, float],
+    at: tuple[float, float, float, float, float, float, float],
     way: tuple[float, float, float, float],
     spread: tuple[float, float, float, float],
     radius: float,
@@ -142,13 +145,13 @@ def _error(
     """Return the bound for one light and channel.
 
     Numbers and bare arrays instead of named tuples, which would be copied with every call. `at` is
-    k1, k2, error, facet, rough and tilt, `way` N.w, w along both principal directions and the slope
-    along w, `spread` that of the channel.
+    k1, k2, error, facet, rough, tilt and bumps, `way` N.w, w along both principal directions and
+    the slope along w, `spread` that of the channel.
     """
     a, u, v, steep = way
     length, psi_0, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
-    noise, facet, rough, tilt = at[2], at[3], at[4], at[5]
+    noise, facet, rough, tilt, bumps = at[2], at[3], at[4], at[5], at[6]
     p, q = max(k1, 0.0), max(k2, 0.0)
     sine = np.sqrt(u * u + v * v)
     b = np.sqrt((p * u) ** 2 + (q * v) ** 2)
@@ -195,7 +198,8 @@ def _error(
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
     error += parts[8] * (lit + 1.5 * edge_ * edge_)
     error += parts[9] * held * rough * lit
-    error += parts[10] * tilt * sine * fall + parts[11] * e2
+    crossed = parts[10] * tilt + parts[11] * bumps * np.sqrt(held * (1.0 - held))
+    error += crossed * sine * fall + parts[12] * e2
     return min(error, 1.0)
 
 
@@ -221,6 +225,7 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     """
     points, normals, directions, slope = on.points, on.normals, on.directions, on.slope
     k, noise, facet, rough, tilt = on.curvatures, on.error, on.facet, on.rough, on.tilt
+    bumps = on.bumps
     length, psi_0, per_width, square = of.length, of.psi_0, of.per_width, of.square
     w, corners, entering = of.weights, of.corners, of.entering
     radius, bend, off, parts = on.radius, by.bend, by.off, by.parts
@@ -228,7 +233,7 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     for i in prange(len(points)):
         if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
             continue
-        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i])
+        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], bumps[i])
         for light in range(len(lights)):
             x, y, z, strength = light_at(lights, light, points[i, 0], points[i, 1], points[i, 2])
             a = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z

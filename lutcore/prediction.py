@@ -38,13 +38,15 @@ WEIGHTS = {
     "base": 2e-4,
     "rough": 1.0,
     "tilt": 20.0,
+    "bumps": 0.8,
     "residue": 1.0,
 }
 """By how much each term of `lutcore.error_terms` counts.
 
 One set for all models, set by hand near what regression to the 95th percentile of each model's
 errors gives on random ellipsoids, tori, cylinders and noisy tori (``python -m
-tests.bench.prediction --tune 80``); `base` and `residue` from what was left uncovered there.
+tests.bench.prediction --tune 80``); `base` and `residue` from what was left uncovered there, and
+`bumps` on noisy tori, bumps and the sample scans.
 """
 
 _HINGES = 4
@@ -102,8 +104,11 @@ class Scene:
         Mean over the faces at a vertex of 1 - cos of the angle between their normals and its own:
         detail that the given normals do not have, and by how much it adds to the area.
     tilt : ndarray, shape=(n,)
-        Error of the curvature times its scale, or the width of what light sees where the
-        normals are of that: that of the normal, rad.
+        Error of the curvature times its scale: that of the normal, rad; 0 where the normals are
+        what the light of each channel sees.
+    bumps : ndarray, shape=(n,)
+        Angle between the faces' normals and the vertex's, root mean square, rad; 0 where the
+        normals are those of one scale.
     radius : float
         That of a ball of the same volume over area, mm; infinite for an open surface.
     lights : ndarray, shape=(l, LIGHT_FIELDS)
@@ -121,6 +126,7 @@ class Scene:
     facet: FloatArray
     rough: FloatArray
     tilt: FloatArray
+    bumps: FloatArray
     radius: float
     lights: FloatArray
     table: PsiTable
@@ -146,9 +152,8 @@ class Scene:
             inputs.points, inputs.faces, inputs.normals, curvatures.k1 + curvatures.k2
         )
         error = np.where(np.isfinite(curvatures.error), curvatures.error, 0.0)
-        scale = curvatures.scale
-        if inputs.detail is not None:  # normals are then those of the light's own width
-            scale = np.minimum(scale, inputs.detail.widths.max())
+        nothing = np.zeros(len(error))
+        seen = inputs.detail is not None
         return cls(
             points=inputs.points,
             normals=inputs.normals,
@@ -158,7 +163,9 @@ class Scene:
             slope=slope / size**2,
             facet=facet * size**2,
             rough=rough,
-            tilt=error * scale,
+            tilt=nothing if seen else error * curvatures.scale,
+            # 1 - cos is half of the angle's square; rounding may make it less than 0.
+            bumps=np.sqrt(2.0 * np.maximum(rough, 0.0)) if seen else nothing,
             radius=radius * size,
             lights=inputs.lights,
             table=inputs.table,
@@ -188,6 +195,7 @@ class Scene:
             facet=self.facet[chosen],
             rough=self.rough[chosen],
             tilt=self.tilt[chosen],
+            bumps=self.bumps[chosen],
         )
 
     @property
@@ -289,6 +297,7 @@ class Scene:
             self.facet,
             self.rough,
             self.tilt,
+            self.bumps,
             self.radius,
         )
         known = Known(near.max(axis=1), BENDS.index(model.bend), weights)

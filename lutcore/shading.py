@@ -85,7 +85,27 @@ class ShadingInputs:
     @property
     def table(self) -> PsiTable:
         """The psi table of the material and the profile, baked once."""
-        return bake(self.material, profile=self.profile)
+        return self.baked(0)
+
+    def baked(self, samples: int) -> PsiTable:
+        """Return the psi table with a number of samples, baked once.
+
+        Parameters
+        ----------
+        samples : int
+            8 to 8192, or 0 for as many as the profile needs.
+
+        Returns
+        -------
+        PsiTable
+            See `lutcore.baking.bake`.
+
+        Raises
+        ------
+        ParameterError
+            If there may not be so few.
+        """
+        return bake(self.material, samples or None, self.profile)
 
 
 @dataclass(frozen=True)
@@ -100,6 +120,9 @@ class ShadingModel(Parameters, ABC):
 
     growth: ClassVar[str] = "n"
     """How its time grows with the number n of vertices: n (and of lights), n log n or n^2."""
+
+    aim: ClassVar[str] = ""
+    """What it comes near to in place of the profile integrated over the surface, if it does."""
 
     @abstractmethod
     def shade(self, inputs: ShadingInputs) -> FloatArray:

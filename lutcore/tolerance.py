@@ -6,7 +6,7 @@ import numpy as np
 
 from lutcore.arrays import FloatArray
 from lutcore.color import auto_exposure, srgb_encode
-from lutcore.metrics import ciede2000_lab
+from lutcore.metrics import ciede2000_lab, lab
 
 METRICS = ("relative", "mean-de2000", "p99-de2000")
 """See `Tolerance.metric`."""
@@ -14,6 +14,7 @@ METRICS = ("relative", "mean-de2000", "p99-de2000")
 DEFAULTS = {"relative": 0.02, "mean-de2000": 1.0, "p99-de2000": 2.0}
 """Tolerances by metric where none is given; a CIEDE2000 of 1 is just noticeable side by side."""
 
+_LIGHT_OF_COLOR = 0.01
 # Errors of three channels may add up in colour or cancel: all signs but for the common one.
 _SIGNS = np.array([[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]])
 
@@ -33,6 +34,15 @@ class Tolerance(NamedTuple):
 
     value: float
     metric: str = "relative"
+
+    @property
+    def light(self) -> float:
+        """The relative error of light that is as strict, or stricter.
+
+        L* = 116 Y^(1/3) - 16: a share s of the light moves it by at most 39 s, so that a
+        CIEDE2000 of 1 is 2.6 % of white and more of what is darker; a hundredth is taken.
+        """
+        return self.value if self.metric == "relative" else _LIGHT_OF_COLOR * self.value
 
     def score(self, errors: FloatArray) -> float:
         """Return what the tolerance is compared with.
@@ -98,8 +108,23 @@ def color_differences(exitance: FloatArray, errors: FloatArray) -> FloatArray:
     return largest
 
 
-def _lab(linear: FloatArray) -> FloatArray:
-    import colour
+def color_distances(one: FloatArray, other: FloatArray, exposure: float) -> FloatArray:
+    """Return how different two exitances look.
 
-    xyz = colour.sRGB_to_XYZ(srgb_encode(np.ascontiguousarray(linear)))
-    return np.asarray(colour.XYZ_to_Lab(xyz), dtype=np.float64)
+    Parameters
+    ----------
+    one, other : ndarray, shape=(n, 3)
+        Linear RGB.
+    exposure : float
+        Factor of both.
+
+    Returns
+    -------
+    ndarray, shape=(n,)
+        CIEDE2000, encoded as for a display.
+    """
+    return ciede2000_lab(_lab(exposure * one), _lab(exposure * other))
+
+
+def _lab(linear: FloatArray) -> FloatArray:
+    return lab(srgb_encode(np.ascontiguousarray(linear)))

@@ -56,21 +56,9 @@ def chosen(session: Session, pipeline: "Pipeline", made: "Picture") -> str:
         The model itself, or for `auto` what it came to.
     """
     from app.camera import axes
-    from lutcore.choice import choose
-    from lutcore.costs import costs
-    from lutcore.parameters import create
-    from lutcore.shading import AUTO, model_registry
-    from lutcore.tolerance import Tolerance
+    from app.settling import settled
 
-    model = session.model
-    if model.name != AUTO:
-        return model.label
-    plugin = create(model_registry.get(AUTO), "shading model 'auto'", dict(model.parameters))
-    wanted = Tolerance(plugin.tolerance, plugin.metric)  # type: ignore[attr-defined]
-    inputs = pipeline.inputs(session, axes(made.camera))
-    found = choose(inputs, wanted, costs(pipeline.progress), whole=False)
-    name = found.chosen.candidate.label
-    return f"{name} blended with {found.cheaper.candidate.label}" if found.cheaper else name
+    return settled(pipeline.settled(session, session.model, axes(made.camera))).label
 
 
 def failure(error: BaseException) -> dict[str, object]:

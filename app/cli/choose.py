@@ -1,9 +1,9 @@
 """Say which shading model is enough for a scene, what it costs, and why.
 
-Predicts the error of each model from the mesh's curvature, the material and the lights, without
-shading anything, measures once what each costs on this machine, and takes the cheapest that is
-within the tolerance. The truth is the diffusion profile gathered over the surface itself.
---model auto of the other commands does the same.
+Predicts the error of each model from the mesh's curvature, the material and the lights, checks
+local models against light gathered at some thousand vertices, measures once what each costs on this
+machine, and takes the cheapest that is within the tolerance. The truth is the diffusion profile
+gathered over the surface itself. --model auto of the other commands does the same.
 """
 
 import argparse
@@ -12,14 +12,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli import options
-from app.cli.console import answer, note, progress, table
+from app.cli.choose_said import text
+from app.cli.console import answer, note, progress
 from lutcore.parameters import Number
 
 if TYPE_CHECKING:
     from app.choosing import Needs
     from app.pipeline import Pipeline
     from app.session import Session
-    from lutcore.choice import Rung
+    from lutcore.judging import Rung
 
 _TOLERANCE = Number(1e-4, 100.0, "", "Error that is good enough, in the metric's unit.", False)
 
@@ -48,6 +49,11 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
         default=METRICS[0],
         help="relative: 99 %% of vertices, in R_d and the largest irradiance; CIEDE2000 over the "
         "vertices: mean or 99th percentile (relative)",
+    )
+    group.add_argument(
+        "--predicted-only",
+        action="store_true",
+        help="do without the check at a sample of the vertices",
     )
     group.add_argument("--again", action="store_true", help="measure the models' costs again")
     options.add_shading(parser, words, with_model=False)
@@ -87,17 +93,19 @@ def run(arguments: argparse.Namespace) -> int:
         note(arguments, f"{session.mesh}: {warning}")
     tolerance = Tolerance(float(value), arguments.metric)
     camera = camera_of(session.camera, subject, 1.0)
-    found = needs(session, pipeline, axes(camera), tolerance, arguments.again)
+    checked = not arguments.predicted_only
+    found = needs(session, pipeline, axes(camera), tolerance, arguments.again, checked)
     result = _plain(session, pipeline, found) | {
         "warnings": warnings,
         "seconds": round(time.perf_counter() - start, 3),
     }
-    answer(arguments, result, _text(session, pipeline, found))
+    answer(arguments, result, text(session, pipeline, found))
     return 0
 
 
 def _plain(session: "Session", pipeline: "Pipeline", found: "Needs") -> dict[str, object]:
     from app.costs import machine
+    from lutcore.checking import CONFIDENCE
 
     subject, choice = pipeline.subject(session), found.choice
     chosen = choice.chosen.candidate
@@ -118,10 +126,18 @@ def _plain(session: "Session", pipeline: "Pipeline", found: "Needs") -> dict[str
             "milliseconds": choice.milliseconds,
             "adequate": choice.chosen.adequate,
             "local": chosen.model.local,
+            "by_prediction": choice.by_prediction.candidate.label,
+            "overruled": choice.overruled,
             "reason": choice.sentence,
             "local_suffices_at_times_the_size": choice.enough,
         },
-        "table_samples": found.samples,
+        "check": {
+            "share_of_vertices": choice.coverage.share,
+            "confidence": CONFIDENCE,
+            "milliseconds": choice.check_milliseconds,
+            "none_because": choice.coverage.reason or None,
+        },
+        "table_samples": choice.samples,
         "shadows": None
         if found.shadows is None
         else {
@@ -146,57 +162,8 @@ def _rung(rung: "Rung") -> dict[str, object]:
         "share": rung.share,
         "ns_per_vertex_and_light": rung.nanoseconds,
         "milliseconds": rung.milliseconds,
+        "checked": None if rung.checked is None else rung.checked._asdict(),
+        "predicted_adequate": rung.predicted,
+        "aims_elsewhere": rung.candidate.model.aim or None,
         "adequate": rung.adequate,
     }
-
-
-def _text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
-    choice = found.choice
-    metric = choice.tolerance.metric
-    head = ["model", "error: median", "99th perc.", metric, "suffices on", "ns", "ms", ""]
-    if metric == "relative":
-        head.remove(metric)
-    rows = [head]
-    for rung in choice.rungs:
-        known = rung.median == rung.median
-        cells = [rung.candidate.label]
-        cells += [f"{rung.median:.2g}", f"{rung.p99:.2g}"] if known else ["-", "-"]
-        if metric != "relative":
-            cells.append(f"{rung.score:.2g}" if known else "-")
-        cells.append(f"{100.0 * rung.share:.1f} %" if known else "-")
-        cells += [f"{rung.nanoseconds:.0f}", f"{rung.milliseconds:.2f}"]
-        cells.append("enough" if rung.adequate else ("" if known else "error not predicted"))
-        rows.append(cells)
-    size = pipeline.mm_per_unit(session)
-    lines = [
-        f"{pipeline.material(session).name}, {size:g} mm per unit, {len(session.lights)} lights, "
-        f"tolerance {choice.tolerance.value:g} ({metric}); errors in R_d and the largest "
-        "irradiance, ns per vertex and light",
-        "",
-        table(rows),
-        "",
-        f"choice: {choice.sentence}.",
-        f"costs {choice.milliseconds:.3g} ms for this mesh and its lights",
-        f"table: {found.samples} samples of psi are enough",
-    ]
-    if found.shadows is not None:
-        need = "needed" if found.shadows.needed else "not needed"
-        change = f"{100.0 * found.shadows.change:.1f} % of the light (root mean square)"
-        lines.append(f"shadows: {need}; they change {change}")
-    if found.scale is not None:
-        finer = f"light carries an edge by {found.glow:.3g}"
-        lines.append(f"scale of curvature: {found.scale:.3g} mesh units; {finer}")
-    return "\n".join([*lines, *_physics(found)])
-
-
-def _physics(found: "Needs") -> list[str]:
-    """Say where the truth itself, the profile over the surface, is no longer light transport."""
-    ten = found.tight["below_10_l_d"]
-    if ten < 0.01:
-        return []
-    return [
-        f"against a random walk: {100.0 * ten:.0f} % of the vertices have a radius of curvature "
-        f"below 10 diffusion lengths ({100.0 * found.tight['below_5_l_d']:.0f} % below 5), where "
-        "the profile itself is off by 10 % and more, gathered or not; curvature-lut-physical is "
-        "made for them"
-    ]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from app.cli.referring import Reference
     from app.failing import Failing
     from app.picture import Picture
-    from app.settling import Settled
+    from app.session import Settled
 
 
 class Run:
@@ -44,6 +44,7 @@ class Run:
         self.pipeline = pipeline or Pipeline()
         self.pipeline.progress = progress(arguments)
         self.reference: Reference | None = None
+        self._camera: Camera | None = None
         self._start = time.perf_counter()
 
     def require(self, *suffixes: str) -> None:
@@ -179,6 +180,7 @@ class Run:
         from app.record import record_of
 
         made = render(self.session, self.pipeline)
+        self._camera = made.camera
         record = record_of(self.session, self.pipeline, made)
         write_picture(self.output, made.image, record)
         if self.reference is not None:
@@ -230,7 +232,10 @@ class Run:
             Exit code: 6 if the picture differs from its reference.
         """
         if self.arguments.save_session:
-            state.write(self.session, self.arguments.save_session)
+            from app.settling import recorded
+
+            kept = recorded(self.session, self.pipeline, self._axes(self._camera))
+            state.write(kept, self.arguments.save_session)
         if self.reference is None:
             answer(self.arguments, result, text)
             return 0

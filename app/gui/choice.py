@@ -12,7 +12,7 @@ from lutcore.progress import Progress, part
 
 if TYPE_CHECKING:
     from app.choosing import Needs
-    from lutcore.choice import Rung
+    from lutcore.judging import Rung
 
 _LONGEST = 1200.0  # seconds to measure the models, compiling included
 _MEMORY = 16 << 30

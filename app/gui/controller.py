@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from msgspec.structs import replace
 from psygnal import Signal
@@ -12,7 +12,7 @@ from app import session as state
 from app.gui.document import Document
 from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline, Subject
-from app.session import Camera, Session
+from app.session import Camera, Session, Settled
 from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
+_AUTO = "auto"  # that of `lutcore.shading`, which takes a while to load
 # A change of anything else leaves what is being computed of use: it is seen while dragging.
 _LIVE = {
     "lights",
@@ -55,6 +56,8 @@ class Outcome:
         What the picture used, 1/mesh unit.
     mm_per_unit : float
         Size of a mesh unit.
+    settled : tuple of Settled
+        What the model `auto` came to.
     """
 
     session: Session
@@ -62,6 +65,14 @@ class Outcome:
     composition: "Composition"
     curvatures: "PrincipalCurvatures"
     mm_per_unit: float
+    settled: tuple[Settled, ...] = ()
+
+
+class _Held(NamedTuple):
+    """What stands still while something is dragged."""
+
+    exposure: float | None
+    settled: tuple[Settled, ...]
 
 
 class Controller:
@@ -101,7 +112,7 @@ class Controller:
         self.follows: Callable[[set[str]], bool] | None = None
         """Told which fields changed; True if the view shows that itself, and asks when it rests."""
         self._size = (800, 600)
-        self._held: float | None = None
+        self._held: _Held | None = None
         self._subject: Subject | None = None
         self.document.changed.connect(self._on_change)
 
@@ -155,7 +166,7 @@ class Controller:
         if path.suffix.lower() != SESSION_SUFFIX:
             path = path.with_name(path.name + SESSION_SUFFIX)
         try:
-            self.document.save(path)
+            self.document.save(path, self.outcome.settled if self.outcome else ())
         except CurvelightError as error:
             self.failed.emit(str(error))
             return False
@@ -233,19 +244,20 @@ class Controller:
         )
 
     def begin_drag(self) -> None:
-        """Make what follows one step of the history, under the exposure of the picture shown.
+        """Make what follows one step of the history, under exposure and model of the picture shown.
 
-        An exposure that followed a light while it is dragged would flicker. `end_drag` has it
-        found anew, so that the still picture is that of the command line.
+        What followed a light while it is dragged would flicker. `end_drag` has it found anew, so
+        that the still picture is that of the command line.
         """
         self.document.begin_drag()
-        self._held = self.outcome.composition.exposure if self.outcome else None
+        shown = self.outcome
+        self._held = _Held(shown.composition.exposure, shown.settled) if shown else None
 
     def end_drag(self) -> None:
         """End what `begin_drag` began."""
         self.document.end_drag()
         held, self._held = self._held, None
-        if held is not None and self.session.exposure is None:
+        if held and (held.settled or (held.exposure and self.session.exposure is None)):
             self.refresh()
 
     def run(
@@ -283,7 +295,7 @@ class Controller:
         self.worker.close()
         self.aside.close()
 
-    def _compose(self, session: Session, held: float | None) -> Outcome:
+    def _compose(self, session: Session, held: "_Held | None") -> Outcome:
         subject = self.pipeline.subject(session)
         if subject is not self._subject:
             if self._subject is None:
@@ -293,15 +305,26 @@ class Controller:
                 self.worker.post(lambda: self.previewed.emit(grey))
             self._subject = subject
             self.worker.post(lambda: self.loaded.emit(subject))
+        from app.camera import axes
         from app.picture import compose
+        from app.settling import recorded
 
-        made = compose(session, self.pipeline, held)
+        settled: tuple[Settled, ...] = ()
+        if held and held.settled and session.model.name == _AUTO and session.view != "compare":
+            # To choose anew for each place of a light takes a second, and may flicker.
+            settled = held.settled
+            drawn = replace(session, model=settled[0].method)
+            made = compose(drawn, self.pipeline, held.exposure)
+        else:
+            made = compose(session, self.pipeline, held.exposure if held else None)
+            settled = recorded(session, self.pipeline, axes(made.camera)).settled
         return Outcome(
             session,
             subject,
             made,
             self.pipeline.curvatures(session),
             self.pipeline.mm_per_unit(session),
+            settled,
         )
 
     def _on_change(self, session: Session, before: Session) -> None:

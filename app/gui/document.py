@@ -10,7 +10,7 @@ from psygnal import Signal
 
 from app import session as state
 from app.samples import PREFIX
-from app.session import Camera, Session
+from app.session import Camera, Session, Settled
 
 _MOST_STEPS = 500
 # Changes of one control within this time are one step: a slider that is dragged.
@@ -197,20 +197,22 @@ class Document:
         self._saved, self.path = session, path
         self._show(session)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, settled: tuple[Settled, ...] = ()) -> None:
         """Write the session as a file, whole or not at all.
 
         Parameters
         ----------
         path : Path
             Where to.
+        settled : tuple of Settled
+            What the model `auto` came to where the session was drawn.
 
         Raises
         ------
         WriteError
             If it cannot be written.
         """
-        state.write(self._session, path)
+        state.write(replace(self._session, settled=settled), path)
         self._saved, self.path = self._session, path
         self.history_changed.emit()
 

@@ -147,8 +147,9 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
 
     model = pipeline.settled(session, session.model, axes)
     inputs = pipeline.inputs(session, axes)
-    seen, table = inputs.detail, inputs.table
+    seen = inputs.detail
     bent = model if isinstance(model, CurvatureLut) else None
+    table = inputs.table if bent is None else inputs.baked(bent.samples)
     facing = (inputs.normals,) if seen is None else tuple(seen.normals)
     shapes = (inputs.shape,) if seen is None else tuple(seen.shape)
     vectors = {f"facing{channel}": normals for channel, normals in enumerate(facing)}

@@ -13,13 +13,15 @@ from lutcore.tolerance import METRICS, Tolerance
 @model_registry.register(AUTO)
 @dataclass(frozen=True)
 class Auto(ShadingModel):
-    """Whichever model is the cheapest whose predicted error is within a tolerance.
+    """Whichever model is the cheapest whose error is within a tolerance.
 
     Errors are predicted from curvature, its error bar, its change along the surface, the material
-    and the lights (`lutcore.prediction`), costs are measured on this machine (`lutcore.costs`),
-    and where a cheaper model suffices on part of the surface it is blended in without a seam
-    (`lutcore.blend`). Where no local model suffices, it is `jensen2002`, which gathers the light of
-    the whole mesh. `curvelight choose` tells what it is and why.
+    and the lights (`lutcore.prediction`), and checked against light gathered at a sample of the
+    vertices (`lutcore.checking`); costs are measured on this machine (`lutcore.costs`). The table
+    of psi has as many samples as matter. Where a cheaper model suffices on part of the surface it
+    is blended in without a seam (`lutcore.blend`). Where no local model suffices, it is
+    `jensen2002`, which gathers the light of the whole mesh. `curvelight choose` tells what it is
+    and why.
     """
 
     tolerance: float = param(0.02, 1e-4, 100.0, "", "How wrong it may be, in the metric's unit.")
@@ -28,11 +30,17 @@ class Auto(ShadingModel):
         METRICS,
         "Error of 99 % of vertices in R_d, or CIEDE2000: mean or 99th percentile.",
     )
+    check: str = choice(
+        "sample",
+        ("sample", "none"),
+        "Whether predictions are checked against light gathered at a sample of the vertices.",
+    )
 
     def settled(self, inputs: ShadingInputs) -> ShadingModel:
         """Return the model that was chosen; see `ShadingModel.settled`."""
-        wanted = Tolerance(self.tolerance, self.metric)
-        return choose(inputs, wanted, costs(inputs.progress), whole=False).model
+        wanted, checked = Tolerance(self.tolerance, self.metric), self.check == "sample"
+        known = costs(inputs.progress)
+        return choose(inputs, wanted, known, whole=False, checked=checked).model
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""

@@ -6,6 +6,7 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
+from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.detail import Detail
@@ -43,6 +44,7 @@ class CurvatureLut(ShadingModel):
         ("curved", "flat"),
         "Area that light enters by: corrected to second order, or the tangent plane's.",
     )
+    samples: int = samples_parameter()
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
@@ -53,7 +55,7 @@ class CurvatureLut(ShadingModel):
         return self._shade(inputs, seen.normals, seen.shape)
 
     def _shade(self, inputs: ShadingInputs, normals: FloatArray, shape: FloatArray) -> FloatArray:
-        table = inputs.table
+        table = inputs.baked(self.samples)
         fit = hinges(table.eta, self.hinges)
         arguments = (inputs.points, normals, shape, inputs.lights)
         return _exitance(*arguments, fit.corners, fit.weights, *_constants(table, self.area))

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
-from lutcore.baking import BETA_FLOOR
+from lutcore.baking import BETA_FLOOR, samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.diffusion import Optics, optics
@@ -58,11 +59,14 @@ class CurvatureLutPhysical(ShadingModel):
     .. [2] S. Chandrasekhar, "Radiative Transfer", 1950, chapter V; see `lutcore.halfspace`.
     """
 
+    aim: ClassVar[str] = "light transport itself, as a random walk has it"
+
     hinges: int = param(4, 1, 16, "", "Hinges that stand for the Fresnel transmittance.")
+    samples: int = samples_parameter()
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        table = inputs.table
+        table = inputs.baked(self.samples)
         fit = hinges(table.eta, self.hinges)
         channels = optics(inputs.material)
         inverse = np.stack([_inverse_albedo(channel) for channel in channels])

@@ -9,6 +9,8 @@ from lutcore.parameters import param
 from lutcore.prediction import Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
+_FINER = 0.001
+
 
 @model_registry.register("jensen2002")
 @dataclass(frozen=True)
@@ -43,3 +45,8 @@ class Jensen2002(ShadingModel):
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
         return scene.facets(self.tolerance)
+
+    @classmethod
+    def rungs(cls) -> tuple[ShadingModel, ...]:
+        """Return two accuracies; see `ShadingModel.rungs`."""
+        return cls(), cls(tolerance=_FINER)

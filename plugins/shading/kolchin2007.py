@@ -6,6 +6,7 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrays import FloatArray
+from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending
 from lutcore.fresnel import mean_transmittance
@@ -36,9 +37,11 @@ class Kolchin2007(ShadingModel):
        GRAPHITE 2007.
     """
 
+    samples: int = samples_parameter()
+
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
-        table = inputs.table
+        table = inputs.baked(self.samples)
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
         total = table.total * mean_transmittance(table.eta)
         return _exitance(*arguments, total, table.mean_free_path, table.rows, table.inverse_step)

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from app import costs as kept
+from app.choosing import needs
 from app.cli.main import main
 from app.pipeline import Pipeline
-from app.session import Method, Session
+from app.session import Directional, Method, Session
 from lutcore import analytic
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
+from lutcore.tolerance import Tolerance
 from tests.mesh_files import ply
 
 AXES = np.eye(3)
@@ -28,6 +30,15 @@ def known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         slow = 1.0 if one.model.local else 100.0
         remember({one.label: Cost(slow * (10.0 + number), one.model.growth)})
     return place
+
+
+@pytest.fixture
+def lump(tmp_path: Path) -> str:
+    """A body that no sphere and no quadric comes near to."""
+    path = tmp_path / "lump.ply"
+    body = analytic.ellipsoid(3000, axes=(20.0, 10.0, 5.0))
+    path.write_bytes(ply(body.mesh.vertices, body.mesh.faces))
+    return str(path)
 
 
 @pytest.fixture
@@ -52,13 +63,39 @@ def test_prints_one_object(ball: str, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_says_plainly_when_no_local_model_is_enough(
-    ball: str, capsys: pytest.CaptureFixture[str]
+    lump: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["choose", ball, "--mm-per-unit", "0.3", "--light", "1,0,1"]) == 0
+    assert main(["choose", lump, "--mm-per-unit", "0.3", "--light", "1,0,1"]) == 0
     text = capsys.readouterr().out
     assert "no local model suffices" in text
     assert "jensen2002 suffices" in text
     assert "random walk" in text
+    assert "curvature-lut-physical is never chosen" in text
+
+
+def test_the_check_overrules_the_prediction(ball: str, capsys: pytest.CaptureFixture[str]) -> None:
+    # On a sphere the sphere's table is exact, which no prediction dares to say.
+    asked = ["choose", ball, "--mm-per-unit", "0.3", "--light", "1,0,1"]
+    assert main([*asked, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    choice, check = found["choice"], found["check"]
+    assert choice["overruled"]
+    assert choice["by_prediction"] == "jensen2002"
+    assert choice["model"] == "sphere-table"
+    assert "the check overruled the prediction" in choice["reason"]
+    rung = next(one for one in found["ladder"] if one["model"] == choice["model"])
+    assert not rung["predicted_adequate"]
+    assert rung["checked"]["high"] <= found["tolerance"] < rung["score"]
+    assert check["share_of_vertices"] == 1.0
+    assert check["milliseconds"] > 0.0
+    assert main(asked) == 0
+    assert "that took" in capsys.readouterr().out
+    assert main([*asked, "--predicted-only", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["choice"]["model"] == "jensen2002"
+    assert not found["choice"]["overruled"]
+    assert found["check"]["none_because"] == "no check was asked for"
+    assert all(one["checked"] is None for one in found["ladder"])
 
 
 def test_metric_and_tolerance_are_checked(ball: str) -> None:
@@ -87,12 +124,33 @@ def test_a_broken_file_is_measured_again(known: Path) -> None:
     json.loads(known.read_bytes())
 
 
-def test_auto_is_the_model_that_is_chosen(ball: str) -> None:
+def test_auto_is_the_model_that_is_chosen(ball: str, lump: str) -> None:
     session = Session(mesh=ball, mm_per_unit=100.0)
     pipeline = Pipeline()
     auto = pipeline.exitance(session, Method("auto", {"tolerance": 0.5}), AXES)
     cheapest = pipeline.exitance(session, Method(candidates()[0].name), AXES)
     np.testing.assert_array_equal(auto, cheapest)
-    small = Session(mesh=ball, mm_per_unit=0.3)
+    small = Session(mesh=lump, mm_per_unit=0.3)
     gathered = pipeline.exitance(small, Method("jensen2002"), AXES)
     np.testing.assert_array_equal(pipeline.exitance(small, Method("auto"), AXES), gathered)
+
+
+def test_auto_takes_the_choice_with_its_table(ball: str) -> None:
+    from app.settling import settled
+
+    session = Session(mesh=ball, mm_per_unit=0.3)
+    pipeline = Pipeline()
+    chosen = pipeline.settled(session, Method("auto", {"tolerance": 0.02}), AXES)
+    assert settled(chosen).method.name == "sphere-table"
+    alone = pipeline.settled(session, Method("auto", {"check": "none"}), AXES)
+    assert settled(alone).method.name == "jensen2002"
+    coarse = Method("auto", {"tolerance": 0.05})
+    large = Session(mesh=ball, mm_per_unit=3.0, lights=(Directional((1.0, 0.0, 0.3)),))
+    for one in candidates():
+        if one.name != "curvature-lut" and one.model.local:
+            remember({one.label: Cost(1e4, "n")})
+    method = settled(pipeline.settled(large, coarse, AXES)).method
+    assert method.name == "curvature-lut"
+    assert method.parameters["samples"] == 8.0
+    found = needs(large, pipeline, AXES, Tolerance(0.05))
+    assert settled(found.choice.model).method == method

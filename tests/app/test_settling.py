@@ -2,12 +2,13 @@ import json
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
-from app import costs as kept
+from app import costs as costs_file
 from app.cli.main import main
 from app.pipeline import Pipeline
-from app.session import Method, Session
-from app.settling import settled
+from app.session import Directional, Method, Session, Settled, from_json, read, to_json
+from app.settling import model_of, recorded, settled
 from lutcore.blend import Blend
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from lutcore.errors import ParameterError
@@ -19,7 +20,7 @@ AXES = np.eye(3)
 @pytest.fixture(autouse=True)
 def costs(tmp_path, monkeypatch):
     """Let no test measure: costs in the order of the models' names."""
-    monkeypatch.setattr(kept, "place", lambda: tmp_path / "costs.json")
+    monkeypatch.setattr(costs_file, "place", lambda: tmp_path / "costs.json")
     forget()
     remember({PREDICTION: Cost(5.0, "n")})
     for number, one in enumerate(candidates()):
@@ -53,6 +54,82 @@ def test_a_blend_names_both():
 def test_what_is_not_registered_has_no_name():
     with pytest.raises(ParameterError, match="no shading model is registered as"):
         model_registry.name_of(Blend)
+
+
+def test_what_is_named_is_made_again():
+    blend = Blend(model("lambert", fresnel="directional"), model("curvature-lut", samples=16), 0.02)
+    for one in (blend, model("wrap", width=0.5)):
+        assert model_of(settled(one)) == one
+    with pytest.raises(ValueError, match="together"):
+        Settled(Method("lambert"), Method("wrap"))
+
+
+def another_machine():
+    """Let costs be in the opposite order."""
+    costs_file.place().unlink()
+    for number, one in enumerate(reversed(candidates())):
+        slow = 1.0 if one.model.local else 100.0
+        remember({one.label: Cost(slow * (10.0 + number), one.model.growth)})
+
+
+def test_a_session_keeps_what_auto_came_to_in_its_scene():
+    session = Session(mesh="sample:torus", mm_per_unit=1000.0, model=Method("auto"))
+    here = Pipeline()
+    first = here.settled(session, session.model, AXES)
+    kept = from_json(to_json(recorded(session, here, AXES)))
+    assert [model_of(one) for one in kept.settled] == [first]
+    light = here.exitance(session, session.model, AXES)
+    another_machine()
+    there = Pipeline()
+    other = there.settled(session, session.model, AXES)
+    assert other != first
+    assert there.settled(kept, kept.model, AXES) == first
+    # One pipeline does not mix the two up.
+    assert not np.array_equal(there.exitance(session, session.model, AXES), light)
+    assert np.array_equal(there.exitance(kept, kept.model, AXES), light)
+    # The camera's last bits are those of a machine, too.
+    assert there.settled(kept, kept.model, AXES + 1e-9) == first
+    # Another scene is another choice: lights, material, size, tolerance.
+    changes = [
+        {"lights": (Directional((0.0, 0.0, 1.0)),)},
+        {"material": "marble"},
+        {"mm_per_unit": 1001.0},
+        {"model": Method("auto", {"tolerance": 0.03})},
+    ]
+    for change in changes:
+        changed = replace(kept, **change)
+        assert settled(there.settled(changed, changed.model, AXES)) == settled(
+            Pipeline().settled(replace(changed, settled=()), changed.model, AXES)
+        )
+    assert recorded(changed, there, AXES).settled[0].scene != kept.settled[0].scene
+    assert recorded(replace(kept, model=Method("wrap")), there, AXES).settled == ()
+
+
+def test_pictures_and_session_files_carry_it_to_another_machine(tmp_path, capsys):
+    picture, saved = tmp_path / "p.png", tmp_path / "s.json"
+    arguments = ["shade", "sample:torus", "-o", str(picture), "--mm-per-unit", "1000"]
+    arguments += ["--model", "auto", "--size", "160x120", "--save-session", str(saved)]
+    assert main([*arguments, "--quiet"]) == 0
+    (kept,) = read(saved).settled
+    another_machine()
+    assert main(["verify", str(picture), "--json"]) == 0
+    assert "bit for bit" in json.loads(capsys.readouterr().out)["findings"][0]
+    for source in (saved, picture):
+        again = tmp_path / "again.npz"
+        assert main(["shade", "--session", str(source), "-o", str(again), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["settled"] == kept.as_json()
+    assert main([*arguments[:-2], "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["settled"] != kept.as_json()
+
+
+def test_a_record_of_a_model_that_does_not_exist_is_told(tmp_path, capsys):
+    saved, out = tmp_path / "s.json", str(tmp_path / "o.npz")
+    arguments = ["shade", "sample:torus", "--mm-per-unit", "1000", "--model", "auto", "-o", out]
+    assert main([*arguments, "--save-session", str(saved), "--quiet"]) == 0
+    (kept,) = read(saved).settled
+    saved.write_text(saved.read_text().replace(f'"name": "{kept.method.name}"', '"name": "lamb"'))
+    assert main(["shade", "--session", str(saved), "-o", out, "--quiet"]) == 2
+    assert "lamb" in capsys.readouterr().err
 
 
 def test_auto_is_settled_by_the_scene_and_others_are_themselves():

@@ -47,13 +47,16 @@ def inputs_on(body: analytic.Exact, mm: float) -> ShadingInputs:
     return shading_inputs(body.mesh, body.truth, "skin1", [LIGHT], mm)
 
 
-def test_large_bodies_need_less() -> None:
-    ball = analytic.sphere(3000)
+@pytest.mark.parametrize("checked", [True, False])
+def test_large_bodies_need_less(checked: bool) -> None:
+    ball, ladder = analytic.sphere(3000), models()
     chosen = [
-        choose(inputs_on(ball, mm), Tolerance(0.02), COSTS, models()).chosen.candidate.label
-        for mm in (10_000.0, 60.0, 4.0)
+        choose(inputs_on(ball, mm), Tolerance(0.02), COSTS, ladder, checked=checked)
+        for mm in (10_000.0, 30.0 if checked else 60.0, 4.0)
     ]
-    assert chosen == ["lambert (fresnel directional)", "curvature-lut", "jensen2002"]
+    labels = [one.chosen.candidate.label for one in chosen]
+    assert labels == ["lambert (fresnel directional)", "curvature-lut", "jensen2002"]
+    assert all((one.chosen.checked is None) != (checked and n < 2) for n, one in enumerate(chosen))
 
 
 def test_choice_is_the_cheapest_adequate() -> None:
@@ -140,15 +143,16 @@ def test_blend_is_each_model_where_it_is_alone() -> None:
         np.testing.assert_array_equal(shaded[alone], model.shade(inputs)[alone])
 
 
-def test_a_blend_is_chosen_where_it_pays() -> None:
+@pytest.mark.parametrize(("checked", "mm"), [(True, 10.0), (False, 25.0)])
+def test_a_blend_is_chosen_where_it_pays(checked: bool, mm: float) -> None:
     body = analytic.ellipsoid(6000, axes=(12.0, 3.0, 3.0))
     costly = COSTS | {"curvature-lut": Cost(2000.0, "n")}
     few = [one for one in models() if one.name != "jensen2002"]
-    choice = choose(inputs_on(body, 25.0), Tolerance(0.03), costly, few)
+    choice = choose(inputs_on(body, mm), Tolerance(0.03), costly, few, checked=checked)
     assert choice.blend is not None
     assert choice.milliseconds < choice.chosen.milliseconds
     assert "blended in on the rest" in choice.sentence
-    inputs = inputs_on(body, 25.0)
+    inputs = inputs_on(body, mm)
     given = exitance(choice.model, inputs)
     some = np.arange(0, 6000, 50)
     np.testing.assert_allclose(

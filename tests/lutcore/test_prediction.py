@@ -8,6 +8,8 @@ import pytest
 from lutcore import analytic
 from lutcore.baking import bake
 from lutcore.blend import at
+from lutcore.detail import detail_seen
+from lutcore.estimation import principal_curvatures
 from lutcore.gather.exitance import exact
 from lutcore.lights import DirectionalLight, Light, PointLight
 from lutcore.prediction import COSINES, WEIGHTS, Knowledge, Scene
@@ -123,3 +125,21 @@ def test_part_of_a_scene_is_predicted_as_the_whole() -> None:
     known = Knowledge(np.maximum(COSINES, 0.0), bend="none")
     some = np.arange(3, 400, 7)
     np.testing.assert_array_equal(scene.at(some).error_of(known), scene.error_of(known)[some])
+
+
+def test_bumps_that_light_blurs_or_shows_are_no_error() -> None:
+    # What the normals of each channel's light leave out counts where facets are as wide as light
+    # reaches, and neither the error bar of one scale nor its tilt counts then.
+    weights = np.array([float(term == "bumps") for term in WEIGHTS])
+    body = analytic.torus(3000, irregular=True, major=24.0, minor=10.0)
+    mesh = body.noisy(0.1)
+    found, largest = principal_curvatures(mesh, "auto", 3.0), []
+    for mm in (1e-3, 1.0, 1e3):
+        seen = detail_seen(mesh, "skin1", mm)
+        scene = Scene.of(shading_inputs(mesh, found, "skin1", [LIGHT], mm, detail=seen), found)
+        assert not scene.tilt.any()
+        largest.append(scene.bound(Knowledge(scene.entering), weights).max())
+    assert largest[1] > 3.0 * max(largest[0], largest[2])
+    single = Scene.of(shading_inputs(mesh, found, "skin1", [LIGHT], 1.0), found)
+    assert single.tilt.any()
+    assert not single.bumps.any()

@@ -25,11 +25,11 @@ from app.suffices import Sufficient, colored
 if TYPE_CHECKING:
     from app.choosing import Needs
     from app.gui.window import Window
-    from lutcore.choice import Rung
+    from lutcore.judging import Rung
 
 TITLE, AREA, ORDER, SHOWN = "Choose", "bottom", 2, False
 _TIME = "time for this mesh and its lights, ms"
-_ERROR = "predicted error, R_d"
+_ERROR = "error found, line to the predicted, R_d"
 _STEPS = 100
 _REST = 300  # ms without a change before the ladder is asked again
 
@@ -63,11 +63,7 @@ class ChoosePanel(QWidget):
         super().__init__(window)
         self._window = window
         self.choosing = Choosing(window.controller)
-        self.chart = Scatter(
-            self,
-            "time for this mesh and its lights, ms",
-            "predicted error, R_d",
-        )
+        self.chart = Scatter(self, _TIME, _ERROR)
         self.chart.setAccessibleName("Speed against accuracy; click a point to use that model")
         self.chart.picked.connect(self._on_picked)
         self.sentence = QLabel("", self)
@@ -83,7 +79,7 @@ class ChoosePanel(QWidget):
         self.slider.setValue(_step(FIRST))
         self.slider.valueChanged.connect(self._on_slid)
         self.value = QLabel("", self)
-        self.map = QCheckBox("Show where each model is enough", self)
+        self.map = QCheckBox("Show where each model is predicted to be enough", self)
         self.map.toggled.connect(self.choosing.show_map)
         self.legend = QListWidget(self)
         self.legend.setAccessibleName("Models that are enough, with their share of the vertices")
@@ -152,7 +148,7 @@ class ChoosePanel(QWidget):
         from app.chart.points import Point, Spread
 
         def point(rung: "Rung") -> Point:
-            time, error = rung.milliseconds, rung.score
+            time, error = rung.milliseconds, rung.best_score
             return Point(rung.candidate.label, "", Spread.of([time]), Spread.of([error]))
 
         known = [point(rung) for rung in choice.rungs if not math.isnan(rung.score)]
@@ -161,8 +157,8 @@ class ChoosePanel(QWidget):
             Dot(
                 label=rung.candidate.label,
                 x=rung.milliseconds,
-                y=rung.score if math.isnan(rung.score) else max(rung.score, 1e-6),
-                middle=rung.median if math.isnan(rung.median) else max(rung.median, 1e-6),
+                y=rung.score if math.isnan(rung.score) else max(rung.best_score, 1e-6),
+                middle=rung.median if math.isnan(rung.median) else max(_middle(rung), 1e-6),
                 good=rung.adequate,
                 chosen=rung is choice.chosen,
                 current=Method(rung.candidate.name, dict(rung.candidate.parameters)) == current,
@@ -209,12 +205,19 @@ class ChoosePanel(QWidget):
             self._window.canvas.show_composition(made, camera)
 
 
+def _middle(rung: "Rung") -> float:
+    """Return where the line from what is known best ends: the prediction, or its median."""
+    return rung.median if rung.checked is None else rung.score
+
+
 def _words(rung: "Rung") -> str:
     spent = f"{rung.candidate.label}: {rung.milliseconds:.3g} ms"
     if math.isnan(rung.score):
         return f"{spent}, its error is not predicted"
-    share = f"enough at {100.0 * rung.share:.1f} % of the vertices"
-    return f"{spent}, 99 % of the vertices within {100.0 * rung.score:.2g} % of R_d, {share}"
+    share = f"enough at {100.0 * rung.best_share:.1f} % of the vertices"
+    how = "predicted" if rung.checked is None else f"found; {100.0 * rung.score:.2g} % predicted"
+    score = f"99 % of the vertices within {100.0 * rung.best_score:.2g} % of R_d ({how})"
+    return f"{spent}, {score}, {share}"
 
 
 def _tolerance(step: int) -> float:

@@ -5,11 +5,16 @@ import pytest
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
 
+from app import costs
 from app.gui.aiming import place_of
 from app.gui.light_handles import anchor
 from app.gui.lights import Lights
 from app.picture import compose
 from app.pipeline import Pipeline
+from app.session import Method, read
+from app.settling import model_of
+from lutcore.choice import choose
+from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
 
 LEFT = Qt.MouseButton.LeftButton
@@ -135,3 +140,40 @@ def test_the_chosen_light_survives_that_others_go(window):
     lights.choose(1)
     window.controller.change("lights", lights=lights.all[:1])
     assert lights.index == 0 and lights.light == window.controller.session.lights[0]
+
+
+def test_auto_keeps_its_model_in_a_drag_and_chooses_anew_after_it(
+    qtbot, view, monkeypatch, tmp_path
+):
+    monkeypatch.setattr(costs, "place", lambda: tmp_path / "costs.json")
+    known = {one.label: Cost(10.0 + n, one.model.growth) for n, one in enumerate(candidates())}
+    remember(known | {PREDICTION: Cost(5.0, "n")})
+    chosen = []
+
+    def counted(*arguments, **named):
+        chosen.append(choose(*arguments, **named))
+        return chosen[-1]
+
+    monkeypatch.setattr("plugins.shading.auto.choose", counted)
+    view.controller.change("model", model=Method("auto", {"tolerance": 0.1}))
+    settled(qtbot, view)
+    assert len(chosen) == 1
+    before = view.controller.outcome.settled
+    start = handle(view, 0)
+    QTest.mousePress(view.canvas, LEFT, pos=start)
+    for move in range(1, 4):
+        QTest.mouseMove(view.canvas, start + QPoint(-20, 5) * move)
+        settled(qtbot, view)
+        assert view.controller.outcome.settled == before
+        assert view.controller.session.model.name == "auto"
+    assert len(chosen) == 1
+    QTest.mouseRelease(view.canvas, LEFT, pos=start + QPoint(-60, 15))
+    settled(qtbot, view)
+    assert len(chosen) == 2
+    after = view.controller.outcome.settled
+    assert after[0].scene != before[0].scene
+    assert model_of(after[0]) == chosen[-1].model
+    # A session that is saved keeps it.
+    view.controller.save(tmp_path / "s.json")
+    assert read(tmp_path / "s.json").settled == after
+    forget()
