@@ -43,7 +43,7 @@ class Picture:
 
     Parameters
     ----------
-    image : ndarray of uint8, shape=(height, width, 3)
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB, the first row at the top.
     camera : Camera
         Where it was taken from.

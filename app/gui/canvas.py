@@ -15,6 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from app.backend import Backend, backend_of
 from app.gui import orbit
+from app.gui.background import lay_checks, on_screen
 from app.gui.coarse import Coarse
 from app.gui.stand_in import StandIn
 from app.picture import Composition
@@ -223,6 +224,15 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self.shade_by_pixel(look)
             self.recolored.emit()
 
+    def draw(self) -> None:
+        """Draw a frame now."""
+        if self.backend is not None:
+            # Pictures are drawn in windows off the screen, on this thread: they leave OpenGL in
+            # another state than this window remembers, and its next frame would lack parts.
+            self.window_.MakeCurrent()
+            self.window_.GetState().Reset()
+        self.window_.Render()
+
     def stir(self) -> None:
         """Say that something moves: what is slow to draw is drawn coarsely until it rests."""
         if self._frame > _SLOW:
@@ -248,7 +258,10 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self.origin = made.camera.target
             self._frame = 0.0
         panels, size = made.panels, tuple(window.GetSize())
-        self.drawn = fill(window, panels, size, made.session.background, made.rows, self.origin)
+        background = on_screen(made.session.background)
+        self.drawn = fill(window, panels, size, background, made.rows, self.origin)
+        if background != made.session.background:
+            lay_checks(window, self.devicePixelRatioF())
         self._stand_in.fill(self.drawn, self.origin)
         self._aim()
         self.filled.emit()
@@ -274,7 +287,7 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
     def paintEvent(self, event: QEvent | None) -> None:  # noqa: N802
         """Draw, and note how long it took."""
         start = time.perf_counter()
-        self.window_.Render()
+        self.draw()
         seconds = time.perf_counter() - start
         if self.backend is None and self.drawn:
             self._know_backend()

@@ -10,6 +10,7 @@ from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
 from app.gui import docks, menus
 from app.gui.actions import MENUS, Action, Actions
+from app.gui.background import Background
 from app.gui.banner import Banner
 from app.gui.canvas import Canvas
 from app.gui.coarse import coarse
@@ -83,6 +84,7 @@ class Window(QMainWindow):
         self.setAcceptDrops(True)
         self.resize(1280, 800)
         self.canvas = Canvas(self)
+        self.background = Background(self.controller)
         self.lights = Lights(self.controller, lambda: self.canvas.camera)
         self.light_tool = LightTool(self.canvas, self.controller, self.lights)
         self.canvas.tools.append(self.light_tool)
