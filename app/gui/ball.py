@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from app.gui.aiming import from_ball, on_ball, turned
-from app.gui.keys import kept
 from app.gui.lights import displayed
 from app.session import Vector
 
@@ -147,10 +146,6 @@ class Ball(QWidget):
         if self._dragged:
             self._dragged = False
             self.released.emit()
-
-    def event(self, event: QEvent) -> bool:
-        """Keep the arrow keys from the shortcuts of the window."""
-        return kept(event, tuple(_KEYS)) or bool(super().event(event))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Turn the chosen light by the arrow keys."""

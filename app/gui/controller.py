@@ -83,6 +83,8 @@ class Controller:
     """Emitted with the `Outcome` when a picture is ready."""
     failed = Signal(str)
     """Emitted with a message when something a person asked for could not be done."""
+    faulted = Signal(object)
+    """Emitted with an exception that is a fault in the program; see `app.gui.faults`."""
     noted = Signal(str)
     """Emitted with a remark for the log."""
     standing = Signal(object)
@@ -321,7 +323,10 @@ class Controller:
         error : Exception
             What was raised.
         """
-        self.failed.emit(message_of(error))
+        if isinstance(error, CurvelightError | MemoryError):
+            self.failed.emit(message_of(error))
+        else:
+            self.faulted.emit(error)
 
 
 def message_of(error: Exception) -> str:

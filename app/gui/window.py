@@ -16,7 +16,9 @@ from app.gui.canvas import Canvas
 from app.gui.coarse import coarse
 from app.gui.comparing import Comparing
 from app.gui.controller import SESSION_SUFFIX, Controller, Outcome
+from app.gui.faults import Faults
 from app.gui.journal import Journal
+from app.gui.keys import Keys
 from app.gui.layout import Layout
 from app.gui.light_tool import LightTool
 from app.gui.lights import Lights
@@ -89,6 +91,7 @@ class Window(QMainWindow):
         self.light_tool = LightTool(self.canvas, self.controller, self.lights)
         self.canvas.tools.append(self.light_tool)
         self.banner = Banner(self)
+        self.faults = Faults(self)
         middle = QWidget(self)
         column = QVBoxLayout(middle)
         column.setContentsMargins(0, 0, 0, 0)
@@ -107,6 +110,7 @@ class Window(QMainWindow):
         self.statusBar().addPermanentWidget(Status(self.canvas, lambda: self.pixel_path.reason))
         self.comparing = Comparing(self.controller, self.canvas)
         self.docks = docks.add_all(self)
+        self.keys = Keys(self)
         self.actions_ = Actions()
         self.shortcuts = Shortcuts(self.actions_, self.settings)
         self.shortcuts.changed.connect(self._on_shortcut)
@@ -244,6 +248,7 @@ class Window(QMainWindow):
         if event.spontaneous() and not may_leave(self):
             event.ignore()
             return
+        self.faults.remove()
         self.rescue.close()
         self.layout_.keep()
         self.controller.close()

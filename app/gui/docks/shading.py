@@ -209,6 +209,4 @@ class ShadingPanel(QWidget):
             ]
             return lengths, [profile.total(one) for one in channels]
 
-        self._controller.run(
-            "facts", facts, lambda found: self.material.facts.tell(*found), failed=lambda _: None
-        )
+        self._controller.run("facts", facts, lambda found: self.material.facts.tell(*found))
