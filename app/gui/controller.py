@@ -131,9 +131,10 @@ class Controller:
 
         def opened(_: Subject) -> None:
             if file is None:
-                unchanged = self.document.path is None and not self.document.dirty
+                clean = not self.document.dirty
                 self.document.put("open mesh", session)
-                if unchanged:
+                if clean:  # nothing is lost with it; and no session file says it
+                    self.document.path = None
                     self.document.rest()
             else:
                 self.document.open(session, file)
@@ -197,6 +198,20 @@ class Controller:
             self.failed.emit(str(error))
             return False
         return True
+
+    def complete(self, label: str, **fields: Any) -> None:
+        """Change fields to what is known of the mesh anyway: nobody loses it, so none need save it.
+
+        Parameters
+        ----------
+        label : str
+            See `change`.
+        **fields : object
+            New values, which can be.
+        """
+        clean = not self.document.dirty
+        if self.change(label, **fields) and clean:
+            self.document.rest()
 
     def look(self, camera: str | Camera) -> None:
         """Move the camera.
