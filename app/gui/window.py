@@ -17,6 +17,7 @@ from app.gui.coarse import coarse
 from app.gui.comparing import Comparing
 from app.gui.controller import SESSION_SUFFIX, Controller, Outcome
 from app.gui.faults import Faults
+from app.gui.fitting import fit
 from app.gui.journal import Journal
 from app.gui.keys import Keys
 from app.gui.layout import Layout
@@ -84,7 +85,7 @@ class Window(QMainWindow):
         self.controller = Controller(self._poster.post, session)
         self.journal = Journal(self.controller)
         self.setAcceptDrops(True)
-        self.resize(1280, 800)
+        fit(self, 1280, 800)
         self.canvas = Canvas(self)
         self.background = Background(self.controller)
         self.lights = Lights(self.controller, lambda: self.canvas.camera)
