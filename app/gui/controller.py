@@ -295,6 +295,11 @@ class Controller:
 
         self.worker.submit(key, with_progress, done, failed or self.on_failed, supersede)
 
+    def cancel(self) -> None:
+        """Stop what runs, and drop what waits."""
+        self.worker.cancel()
+        self.aside.cancel()
+
     def close(self) -> None:
         """End the workers."""
         self.worker.close()

@@ -104,7 +104,7 @@ class Window(QMainWindow):
         column.addWidget(self.unit_bar)
         column.addWidget(self.canvas, 1)
         self.setCentralWidget(middle)
-        self.progress = ProgressBar(self, self.controller.worker.cancel)
+        self.progress = ProgressBar(self, self.controller.cancel)
         self.statusBar().addPermanentWidget(self.progress)
         self._connect()
         self.pixel_path = PixelPath(self.controller, self.canvas, self.settings)
