@@ -13,7 +13,7 @@ from qtpy.QtCore import Qt
 from app.gui.recovery import Kept, Recovery
 from app.loading import load_mesh
 from app.samples import sample
-from app.session import Session
+from app.session import Session, read
 from sample_meshes.ply import write_ply
 from tests.app.gui.conftest import settled
 
@@ -24,7 +24,7 @@ import sys
 from pathlib import Path
 from msgspec.structs import replace
 from app.gui.recovery import Recovery
-from app.session import Session
+from app.session import Session, read
 recovery = Recovery(Path(sys.argv[1]), print, delay=0.0)
 session = Session(mesh=sys.argv[2])
 print("ready", flush=True)
@@ -166,3 +166,54 @@ def test_a_mesh_opened_over_a_session_file_is_not_saved_into_it(
     assert "b.ply" in window.windowTitle()
     assert window.controller.session.flip
     assert not _kept(window, qtbot)
+
+
+_USED = """
+import sys
+from pathlib import Path
+from qtpy.QtCore import QTimer
+from qtpy.QtWidgets import QApplication
+application = QApplication([])
+from app.gui.window import Window
+from app.session import Session, read
+window = Window(Session(mesh="sample:saddle"))
+window.show()
+window.start()
+step = 0
+def use():
+    global step
+    step += 1
+    window.controller.change(f"exposure {step}", exposure=1.0 + 0.01 * step)
+    if step == 3:
+        window.controller.save(Path(sys.argv[1]) / "saved.json")
+    if window.rescue.recovery.file.exists() and step > 3:
+        print("used", flush=True)
+timer = QTimer()
+timer.timeout.connect(use)
+timer.start(40)
+application.exec()
+"""
+
+
+def test_a_window_that_is_killed_while_it_is_used_is_offered_whole(
+    open_window, qtbot, config, tmp_path
+) -> None:
+    random = np.random.default_rng(11)
+    for _ in range(3):
+        command = [sys.executable, "-c", _USED, str(tmp_path)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE) as child:
+            assert child.stdout.readline() == b"used\n"
+            time.sleep(float(random.uniform(0.0, 1.5)))
+            child.send_signal(signal.SIGKILL)
+        # Whole or not there; what was half written has a name that nobody reads.
+        for file in (*tmp_path.glob("[!.]*.json"), *config.glob("[!.]*.json")):
+            msgspec.json.decode(file.read_bytes())
+        read(tmp_path / "saved.json")
+    window = open_window(Session(mesh="sample:sphere"))
+    window.rescue.offer()
+    assert window.banner.offering
+    assert "sample:saddle" in window.banner.label.text()
+    qtbot.mouseClick(window.banner.button, Qt.MouseButton.LeftButton)
+    settled(qtbot, window)
+    assert window.controller.session.mesh == "sample:saddle"
+    assert window.controller.session.exposure > 1.0
