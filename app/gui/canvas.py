@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import vtkmodules.vtkRenderingFreeType
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
@@ -14,16 +14,18 @@ from vtkmodules.qt.QVTKRenderWindowInteractor import QVTKRenderWindowInteractor
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from app.backend import Backend, backend_of
+from app.composition import Composition
 from app.gui import orbit
 from app.gui.background import lay_checks, on_screen
 from app.gui.coarse import Coarse
 from app.gui.stand_in import StandIn
-from app.picture import Composition
 from app.render import Drawn, Panel, fill, refill_bar
 from app.scene import ColorScale, Surface, aim, recolor
 from app.session import Camera, Vector
-from app.shader.drawing import PixelLight
-from app.shader.look import PixelLook
+
+if TYPE_CHECKING:
+    from app.shader.drawing import PixelLight
+    from app.shader.look import PixelLook
 
 # Slower than this a moving picture is no longer seen as moving.
 _SLOW = 1.0 / 15.0
@@ -159,7 +161,7 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self._fill(made, before)
         self.update()
 
-    def shade_by_pixel(self, look: PixelLook | None) -> None:
+    def shade_by_pixel(self, look: "PixelLook | None") -> None:
         """Shade the first mesh in the fragment shader, or show the colours of its vertices.
 
         Parameters
@@ -172,6 +174,8 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self.by_pixel = None
             self.resend()  # colours that came meanwhile were not sent
         if look is not None and self.drawn and self.drawn[0].actor is not None:
+            from app.shader.drawing import PixelLight  # which needs compiled code
+
             coarse = self._stand_in.of(0)
             actors = [(self.drawn[0].actor, None), *([coarse] if coarse else [])]
             self.by_pixel = PixelLight(look, actors, self.origin)

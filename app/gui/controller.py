@@ -1,5 +1,6 @@
 """What the window does, without a window: one document, one worker, one picture. Knows no Qt."""
 
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,11 +18,12 @@ from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 
 if TYPE_CHECKING:
-    from app.picture import Composition
+    from app.composition import Composition
     from lutcore.curvature import PrincipalCurvatures
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
+_GREY = 1.0  # s that the worker waits for the first frame at most
 # A change of anything else leaves what is being computed of use: it is seen while dragging.
 _LIVE = {
     "lights",
@@ -311,8 +313,7 @@ class Controller:
             if self._subject is None:
                 from app.gui.preview import preview
 
-                grey = preview(session, subject)
-                self.worker.post(lambda: self.previewed.emit(grey))
+                self._show_grey(preview(session, subject))
             self._subject = subject
             self.worker.post(lambda: self.loaded.emit(subject))
         from app.picture import compose
@@ -325,6 +326,17 @@ class Controller:
             self.pipeline.curvatures(session),
             self.pipeline.mm_per_unit(session),
         )
+
+    def _show_grey(self, grey: "Composition") -> None:
+        """Have it on the screen before going on: what is loaded next takes all of Python's time."""
+        seen = threading.Event()
+
+        def show() -> None:
+            self.previewed.emit(grey)
+            seen.set()
+
+        self.worker.post(show)
+        seen.wait(_GREY)
 
     def _on_change(self, session: Session, before: Session) -> None:
         changed = {name for name in Session.__struct_fields__ if _differ(session, before, name)}

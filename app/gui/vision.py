@@ -8,11 +8,10 @@ from psygnal import Signal
 
 from app.scene import ColorScale, Surface
 from lutcore.arrays import FloatArray
-from lutcore.color import srgb_decode, srgb_encode
 
 if TYPE_CHECKING:
+    from app.composition import Composition
     from app.gui.controller import Controller
-    from app.picture import Composition
     from app.render import Panel
 
 KINDS = {
@@ -113,6 +112,8 @@ def simulated(encoded: FloatArray, found: FloatArray) -> FloatArray:
     ndarray, shape=(n, 3)
         sRGB-encoded, 0 to 1.
     """
+    from lutcore.color import srgb_decode, srgb_encode
+
     return srgb_encode(np.clip(srgb_decode(encoded) @ found.T, 0.0, 1.0))
 
 

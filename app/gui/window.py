@@ -8,6 +8,7 @@ from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
+from app.composition import Composition
 from app.gui import docks, menus
 from app.gui.actions import MENUS, Action, Actions
 from app.gui.background import Background
@@ -34,7 +35,6 @@ from app.gui.unit_bar import UnitBar
 from app.gui.units import Units
 from app.gui.unsaved import Answer, ask, may_leave
 from app.gui.vision import Vision
-from app.picture import Composition
 from app.pipeline import Subject
 from app.session import Camera, Session
 
@@ -150,6 +150,7 @@ class Window(QMainWindow):
     def _on_previewed(self, grey: Composition) -> None:
         if self.controller.outcome is None:
             self.canvas.show_composition(grey, grey.camera)
+            self.canvas.repaint()
 
     def _on_shown(self, outcome: Outcome) -> None:
         # The camera may have moved on while the colours were computed.
