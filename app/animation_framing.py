@@ -3,7 +3,7 @@
 import numpy as np
 
 from app import camera as cameras
-from app.picture import Composition
+from app.composition import Composition
 from app.pipeline import Pipeline
 from app.render import STRIP
 from app.session import Camera

@@ -1,4 +1,7 @@
-"""Which share of the light that leaves a surface goes to the camera."""
+"""Which share of the light that leaves a surface goes to the camera.
+
+A window imports this before its first picture: compiled code is imported where it is used.
+"""
 
 from collections.abc import Hashable
 
@@ -8,8 +11,6 @@ from app.camera import axes
 from app.pipeline import Pipeline, Subject
 from app.session import Camera, Session
 from lutcore.arrays import FloatArray
-from lutcore.color import srgb_decode
-from lutcore.fresnel import transmittance
 from lutcore.mesh import TriangleMesh
 
 
@@ -67,6 +68,8 @@ def albedo(subject: Subject, textured: bool = True) -> FloatArray | None:
         Of its vertices' colours and its texture; None where the file has neither.
     """
     colors, texture = subject.loaded.colors, subject.loaded.texture
+    from lutcore.color import srgb_decode
+
     found = None if colors is None else srgb_decode(colors)
     if texture is None or not textured:
         return found
@@ -102,6 +105,8 @@ def exit_transmittance(
     else:
         cosine = normals @ axes(camera)[2]
     # A surface seen from behind, through a hole, is shown as its front would be.
+    from lutcore.fresnel import transmittance
+
     return transmittance(np.abs(cosine), eta)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from app.render import Image
+from app.transparency import checks, over, with_alpha
 from app.writing import replacing
 from lutcore.arrays import FloatArray
 
@@ -41,7 +42,8 @@ class Likeness:
     total : int
         Of the picture.
     local : float
-        Largest CIEDE2000 averaged over 11 x 11 pixels; infinite where the sizes differ.
+        Largest CIEDE2000 averaged over 11 x 11 pixels; infinite where the sizes differ. What is
+        transparent is seen before black and before white, and the worse counts.
     largest : float
         Largest CIEDE2000 of a pixel; infinite where the sizes differ.
     ssim : float
@@ -105,7 +107,7 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
 
     Parameters
     ----------
-    expected, other : ndarray of uint8, shape=(height, width, 3)
+    expected, other : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB.
     threshold : float or None
         Largest CIEDE2000, averaged over 11 x 11 pixels, of pictures that are alike; their SSIM
@@ -118,11 +120,11 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
     """
     height, width = expected.shape[:2]
     sizes = (width, height), (other.shape[1], other.shape[0])
-    if expected.shape != other.shape:
+    if expected.shape[:2] != other.shape[:2]:
         return Likeness(
             False, threshold, height * width, height * width, np.inf, np.inf, 0.0, sizes, None
         )
-    differing = (expected != other).any(axis=2)
+    differing = (with_alpha(expected) != with_alpha(other)).any(axis=2)
     pixels, difference = int(np.count_nonzero(differing)), np.zeros((height, width))
     if not pixels:
         return Likeness(True, threshold, 0, height * width, 0.0, 0.0, 1.0, sizes, difference)
@@ -131,9 +133,12 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
 
     from lutcore.metrics import ciede2000
 
-    difference[differing] = ciede2000(expected[differing], other[differing])
+    ssim = 1.0
+    for one, two in _seen(expected, other):
+        found = ciede2000(one[differing], two[differing])
+        difference[differing] = np.maximum(difference[differing], found)
+        ssim = min(ssim, float(structural_similarity(one, two, channel_axis=2)))
     local = float(uniform_filter(difference, WINDOW).max())
-    ssim = float(structural_similarity(expected, other, channel_axis=2))
     alike = threshold is not None and local <= threshold and ssim >= LEAST_SSIM
     largest = float(difference.max())
     return Likeness(
@@ -141,14 +146,26 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
     )
 
 
+def _seen(one: Image, other: Image) -> list[tuple[Image, Image]]:
+    """Return two pictures as they are seen: before black and before white, where they let through.
+
+    Alike before both, they are alike before any grey between.
+    """
+    if one.shape[2] == other.shape[2] == 3:
+        return [(one, other)]
+    return [(over(one, grey), over(other, grey)) for grey in (0, 255)]
+
+
 def write_difference(path: Path, expected: Image, other: Image, found: Likeness) -> None:
     """Write a picture of how two pictures differ: both, and CIEDE2000 from black to bright.
+
+    What is transparent lies on grey checks.
 
     Parameters
     ----------
     path : Path
         A PNG file.
-    expected, other : ndarray of uint8, shape=(height, width, 3)
+    expected, other : ndarray of uint8, shape=(height, width, 3 or 4)
         What was compared, of one size.
     found : Likeness
         What was found.
@@ -174,7 +191,8 @@ def write_difference(path: Path, expected: Image, other: Image, found: Likeness)
     pen, font = ImageDraw.Draw(sheet), ImageFont.load_default(_LETTERS)
     titles = "expected", "found", f"CIEDE2000: bright is {top:.3g} or more"
     for index, (image, title) in enumerate(zip((expected, other, heat), titles, strict=True)):
-        sheet.paste(Pillow.fromarray(image), (index * width, 0))
+        laid = over(image, checks(height, width))
+        sheet.paste(Pillow.fromarray(laid), (index * width, 0))
         pen.text((index * width + 4, height + 2), title, fill=(_INK,) * 3, font=font)
     with replacing(path) as beside:
         sheet.save(beside, format="PNG")

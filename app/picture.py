@@ -10,6 +10,7 @@ from app import camera as cameras
 from app.backend import Backend
 from app.colormaps import PAPER, table
 from app.comparison import Place, Single, compared
+from app.composition import Composition
 from app.contestants import alone, bars, check, labels, tiles
 from app.differences import Difference
 from app.fading import faded
@@ -41,7 +42,7 @@ class Picture:
 
     Parameters
     ----------
-    image : ndarray of uint8, shape=(height, width, 3)
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB, the first row at the top.
     camera : Camera
         Where it was taken from.
@@ -68,37 +69,6 @@ class Picture:
     def range(self) -> tuple[float, float] | None:
         """Ends of the colour bar, where there is one and only one."""
         return next(iter(self.ranges.values())) if len(self.ranges) == 1 else None
-
-
-@dataclass(frozen=True, eq=False)
-class Composition:
-    """What a picture holds, before it is drawn: a window draws the same.
-
-    Parameters
-    ----------
-    session : Session
-        What was asked for.
-    panels : tuple of Panel
-        From left to right, and row by row from the top.
-    rows : int
-        Equally high rows.
-    camera : Camera
-        Of all panels with a mesh.
-    exposure : float or None
-        The exposure, where something was shaded.
-    ranges : dict of str to tuple of 2 floats
-        See `Picture`.
-    difference : dict of str to Difference, or None
-        See `Picture`.
-    """
-
-    session: Session
-    panels: tuple[Panel, ...]
-    rows: int
-    camera: Camera
-    exposure: float | None
-    ranges: dict[str, tuple[float, float]]
-    difference: dict[str, Difference] | None
 
 
 def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> Composition:

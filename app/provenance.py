@@ -19,6 +19,7 @@ from app.portable import portable
 from app.record import Record
 from app.render import Image
 from app.session import Session, SessionError
+from app.transparency import without_need
 from app.writing import replacing
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def write_picture(path: Path, image: Image, record: Record) -> None:
     ----------
     path : Path
         Where to.
-    image : ndarray of uint8, shape=(height, width, 3)
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB.
     record : Record
         See `app.record.record_of`; the mesh's path follows the picture.
@@ -129,8 +130,8 @@ def read_pixels(path: Path) -> Image:
 
     Returns
     -------
-    ndarray of uint8, shape=(height, width, 3)
-        sRGB; transparency is left out.
+    ndarray of uint8, shape=(height, width, 3 or 4)
+        sRGB; with alpha only where something can be seen through.
 
     Raises
     ------
@@ -138,7 +139,8 @@ def read_pixels(path: Path) -> Image:
         If it cannot be read.
     """
     with _opened(path) as picture:
-        return np.asarray(picture.convert("RGB"))
+        clear = "transparency" in picture.info or "A" in picture.getbands()
+        return without_need(np.asarray(picture.convert("RGBA" if clear else "RGB")))
 
 
 @contextmanager

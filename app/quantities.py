@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
-from lutcore.diagnostics import vertex_scales
 
 _UNITS = {-1: "mm", 0: "1", 1: "1/mm", 2: "1/mm^2"}
 
@@ -107,6 +106,8 @@ def raw(attribute: str, curvatures: PrincipalCurvatures) -> FloatArray:
         The values.
     """
     if attribute == "scale":
+        from lutcore.diagnostics import vertex_scales  # needs what takes a second to load
+
         return vertex_scales(curvatures)
     values: FloatArray = getattr(curvatures, attribute)
     return values

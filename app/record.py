@@ -17,6 +17,7 @@ from app.pipeline import Pipeline
 from app.render import Image
 from app.session import Camera, Session
 from app.settling import recorded, settled
+from app.transparency import without_need
 from lutcore.shading import AUTO
 
 # Whatever a pixel can depend on beside the session, the mesh and the driver.
@@ -163,7 +164,7 @@ def pixels_digest(image: Image) -> str:
 
     Parameters
     ----------
-    image : ndarray of uint8, shape=(height, width, 3)
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
         The picture.
 
     Returns
@@ -171,6 +172,7 @@ def pixels_digest(image: Image) -> str:
     str
         However the file packs them.
     """
+    image = without_need(image)
     height, width, _ = image.shape
     return hashlib.sha256(f"{width}x{height}:".encode() + image.tobytes()).hexdigest()
 

@@ -2,18 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app import gl
 from app.backend import Backend, backend_of
+from app.ground import Ground, ground
 from app.offscreen import offscreen_window
 from app.scene import (
     ColorScale,
     Surface,
-    color,
     fill_bar,
     fill_caption,
     fill_surface,
@@ -21,6 +21,7 @@ from app.scene import (
     shape_of,
 )
 from app.session import Camera, Vector
+from app.transparency import straight
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -66,8 +67,8 @@ class Drawing:
 
     Parameters
     ----------
-    image : ndarray of uint8, shape=(height, width, 3)
-        sRGB, the first row at the top.
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
+        sRGB, the first row at the top; with alpha where the background is transparent.
     backend : Backend
         The driver.
     """
@@ -86,7 +87,7 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: 
     size : tuple of 2 ints
         Width and height, pixels.
     background : str
-        A CSS colour.
+        A CSS colour, or ``transparent``.
     rows : int
         Equally high rows.
 
@@ -109,7 +110,7 @@ def draw(panels: Sequence[Panel], size: tuple[int, int], background: str, rows: 
 
         # Each whole and by itself, so that either side is what its own picture shows.
         other, _ = _shot([_second(panel) for panel in panels], size, background, rows)
-        image = composed(made.image, other.image, wipes, color(background))
+        image = composed(made.image, other.image, wipes, ground(background))
         made = Drawing(image, made.backend)
     return made
 
@@ -126,13 +127,16 @@ def _shot(
     # Four samples cost 1.6 times one even on a software renderer, once per picture.
     with offscreen_window(size, _SAMPLES) as window:
         drawn = fill(window, panels, size, background, rows)
+        behind = ground(background)
+        window.SetAlphaBitPlanes(behind.transparent)
         window.Render()
         wipes = [
             (one.box, one.panel.content.wipe.at)
             for one in drawn
             if isinstance(one.panel.content, Surface) and one.panel.content.wipe
         ]
-        return Drawing(grab(window, size), backend_of(window)), wipes
+        image = straight(_grab(window, size, 4)) if behind.transparent else grab(window, size)
+        return Drawing(image, backend_of(window)), wipes
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +182,7 @@ def fill(
     size : tuple of 2 ints
         Of the window, pixels.
     background : str
-        A CSS colour.
+        A CSS colour, or ``transparent``.
     rows : int
         Equally high rows.
     origin : tuple of 3 floats, optional
@@ -194,7 +198,7 @@ def fill(
     ParameterError
         If the background is no colour.
     """
-    shade = color(background)
+    behind = ground(background)
     shapes: Shapes = {}
     height = _height(size, rows)
     letters = _caption_letters(panels, (size[0], height))
@@ -206,13 +210,13 @@ def fill(
         bottom = 0.0 if panel.tall else 1.0 - (row + 1) / rows
         right, top = left + panel.width, 1.0 if panel.tall else bottom + 1.0 / rows
         strip = bottom + STRIP if isinstance(panel.content, Surface) else bottom
-        renderer = _add(window, shade, (left, strip, right, top))
+        renderer = _add(window, behind, (left, strip, right, top))
         actor = None
         if isinstance(panel.content, ColorScale):
             fill_bar(renderer, panel.content, (panel.width * size[0], height))
         else:
             actor = _fill_mesh(renderer, panel, shapes, origin)
-            below = _add(window, shade, (left, bottom, right, strip))
+            below = _add(window, behind, (left, bottom, right, strip))
             fill_caption(below, panel.content.caption, letters)
         made.append(Drawn(panel, renderer, actor))
         left = right
@@ -256,14 +260,15 @@ def _caption_letters(panels: Sequence[Panel], size: tuple[float, float]) -> int:
 
 def _add(
     window: "vtkRenderWindow",
-    shade: tuple[float, float, float],
+    behind: Ground,
     box: tuple[float, float, float, float],
 ) -> "vtkRenderer":
     """Return a new renderer of a part of the window: left, bottom, right, top as shares."""
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
     renderer = vtkRenderer()
-    renderer.SetBackground(*shade)
+    renderer.SetBackground(*behind.color)
+    renderer.SetBackgroundAlpha(0.0 if behind.transparent else 1.0)
     renderer.AutomaticLightCreationOff()
     renderer.SetViewport(*box)
     window.AddRenderer(renderer)
@@ -298,11 +303,16 @@ def grab(window: object, size: tuple[int, int]) -> Image:
     ndarray of uint8, shape=(height, width, 3)
         sRGB, the first row at the top.
     """
+    return _grab(window, size, 3)
+
+
+def _grab(window: Any, size: tuple[int, int], channels: int) -> Image:
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
     width, height = size
     pixels = vtkUnsignedCharArray()
-    window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0)  # type: ignore[attr-defined]
-    rows = vtk_to_numpy(pixels).reshape(height, width, 3)
+    read = window.GetPixelData if channels == 3 else window.GetRGBACharPixelData
+    read(0, 0, width - 1, height - 1, 0, pixels, 0)
+    rows = vtk_to_numpy(pixels).reshape(height, width, channels)
     return np.ascontiguousarray(rows[::-1])

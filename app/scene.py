@@ -23,6 +23,7 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 from app import wipe_shader
+from app.ground import Ground
 from app.session import Camera, Vector
 from app.texturing import Coat, coated, relight
 from lutcore.arrays import FloatArray
@@ -116,37 +117,6 @@ class Wipe:
 
     surface: Surface
     at: float
-
-
-def color(text: str) -> tuple[float, float, float]:
-    """Return the colour that a name or #rrggbb stands for.
-
-    Parameters
-    ----------
-    text : str
-        A CSS colour name or hexadecimal notation.
-
-    Returns
-    -------
-    tuple of 3 floats
-        sRGB-encoded, 0 to 1.
-
-    Raises
-    ------
-    ParameterError
-        If it is neither.
-    """
-    from PIL import ImageColor
-
-    from lutcore.errors import ParameterError
-
-    try:
-        red, green, blue = ImageColor.getrgb(text)[:3]
-    except ValueError:
-        raise ParameterError(
-            f"background = {text!r} is not a colour; give a name or #rrggbb"
-        ) from None
-    return red / 255.0, green / 255.0, blue / 255.0
 
 
 def shape_of(mesh: TriangleMesh, origin: Vector) -> vtkPolyData:
@@ -436,8 +406,8 @@ def _text(words: str, renderer: vtkRenderer, size: int) -> vtkTextActor:
 
 
 def _style(style: vtkTextProperty, renderer: vtkRenderer, size: int) -> None:
-    dark = sum(renderer.GetBackground()) < 1.5
-    style.SetColor(*((0.86,) * 3 if dark else (0.1,) * 3))
+    behind = Ground(renderer.GetBackground(), renderer.GetBackgroundAlpha() == 0.0)
+    style.SetColor(*(behind.ink,) * 3)
     style.SetFontSize(max(_LEAST_FONT, size))
     style.SetFontFamilyToArial()
     style.ItalicOff()

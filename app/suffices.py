@@ -11,7 +11,7 @@ from lutcore.arrays import AnyArray
 from lutcore.progress import Progress, silent, tell
 
 if TYPE_CHECKING:
-    from app.picture import Composition
+    from app.composition import Composition
     from lutcore.judging import Rung
     from lutcore.shading import ShadingInputs
 

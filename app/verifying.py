@@ -35,7 +35,7 @@ class Verdict:
         Whether its pixels are not those that were written.
     likeness : Likeness
         The picture beside the redrawn one.
-    expected, redrawn : ndarray of uint8, shape=(height, width, 3)
+    expected, redrawn : ndarray of uint8, shape=(height, width, 3 or 4)
         Both.
     """
 

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from app.ground import Ground
+
 if TYPE_CHECKING:
     from app.render import Box, Image
 
 # Of the picture's height, so that a divider is as visible in a large picture.
 _LINE = 1.0 / 450.0
-_LIGHT, _DARK = 219, 26
 
 
 def column(box: "Box", at: float) -> int:
@@ -57,42 +58,42 @@ def line(box: "Box", at: float) -> tuple[int, int]:
     return max(left, start), min(left + width, start + thick)
 
 
-def line_color(background: tuple[float, float, float]) -> int:
+def line_color(behind: Ground) -> int:
     """Return the grey of the divider: as of letters, to be seen before the ground.
 
     Parameters
     ----------
-    background : tuple of 3 floats
-        Red, green and blue, 0 to 1.
+    behind : Ground
+        The background.
 
     Returns
     -------
     int
         0 to 255.
     """
-    return _LIGHT if sum(background) < 1.5 else _DARK
+    return round(255.0 * behind.ink)
 
 
 def composed(
     first: "Image",
     second: "Image",
     wipes: Sequence[tuple["Box", float]],
-    background: tuple[float, float, float],
+    behind: Ground,
 ) -> "Image":
     """Return a picture of two, pixel for pixel.
 
     Parameters
     ----------
-    first, second : ndarray of uint8, shape=(height, width, 3)
+    first, second : ndarray of uint8, shape=(height, width, 3 or 4)
         The whole picture in either way, the first row at the top.
     wipes : sequence of (tuple of 4 ints, float)
         Where wiped surfaces are drawn, and where in them the second begins.
-    background : tuple of 3 floats
-        Of the picture.
+    behind : Ground
+        The background.
 
     Returns
     -------
-    ndarray of uint8, shape=(height, width, 3)
+    ndarray of uint8, shape=(height, width, 3 or 4)
         With the dividers.
     """
     image: NDArray[np.uint8] = first.copy()
@@ -100,5 +101,7 @@ def composed(
         left, bottom, width, height = box
         rows = slice(len(image) - bottom - height, len(image) - bottom)
         image[rows, column(box, at) : left + width] = second[rows, column(box, at) : left + width]
-        image[rows, slice(*line(box, at))] = line_color(background)
+        divider = slice(*line(box, at))
+        image[rows, divider] = 255
+        image[rows, divider, :3] = line_color(behind)
     return image

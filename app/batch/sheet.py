@@ -129,7 +129,8 @@ def _drawn(store: Store, shown: Sequence[Cell]) -> bytes:
         x, y = column * _CELL[0] + _GAP, row * _CELL[1] + _GAP
         small = _small(store, cell.small)
         if small is not None:
-            sheet.paste(small, (x, y))
+            # Through its alpha, if it has any: the sheet is then its ground.
+            sheet.paste(small, (x, y), small)
         x += THUMBNAIL[0] + _GAP
         width = _CELL[0] - THUMBNAIL[0] - 3 * _GAP
         lines = [(line, _INK, bold) for line in _wrapped(cell.name, bold, width)[:2]]
@@ -151,7 +152,7 @@ def _small(store: Store, name: str) -> "Image | None":
     if content is None:
         return None
     with Image.open(io.BytesIO(content)) as picture:
-        return picture.convert("RGB")
+        return picture.convert("RGBA")
 
 
 def _font(bold: bool) -> "FreeTypeFont":

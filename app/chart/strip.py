@@ -38,7 +38,7 @@ def strip(
 
     Returns
     -------
-    ndarray of uint8, shape=(height, width, 3)
+    ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB. The reference begins each row; one camera, one exposure and one scale for all.
 
     Raises
@@ -75,7 +75,7 @@ def png(image: NDArray[np.uint8]) -> bytes:
 
     Parameters
     ----------
-    image : ndarray of uint8, shape=(height, width, 3)
+    image : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB.
 
     Returns
@@ -92,5 +92,5 @@ def png(image: NDArray[np.uint8]) -> bytes:
 
 def _widened(image: NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
     """Fill up a row with its background, which is in its corner."""
-    more = np.broadcast_to(image[0, -1], (len(image), width - image.shape[1], 3))
+    more = np.broadcast_to(image[0, -1], (len(image), width - image.shape[1], image.shape[2]))
     return np.concatenate([image, more], axis=1)

@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from app.animation_motion import LIGHT_SWEEP, MP4, SUFFIXES, TURNTABLE, Motion
 from app.cli.console import note
 from app.cli.work import Run
+from app.ground import ground
 from lutcore.errors import ParameterError
 
 
@@ -94,6 +95,12 @@ def animate(work: Run) -> int:
     if motion != asked:
         note(arguments, f"a GIF counts in hundredths: {motion.fps:.4g} frames in a second")
     work.require(*SUFFIXES)
+    if ground(work.session.background).transparent:
+        # A GIF's pixels are there or not, which frays outlines; MP4 has no alpha at all.
+        raise ParameterError(
+            "animations cannot be transparent: say --background COLOR, or draw pictures with -o "
+            "NAME.png"
+        )
     if work.output.suffix.lower() == MP4:
         width, height = (side + side % 2 for side in work.session.size)
         if (width, height) != work.session.size:

@@ -108,7 +108,7 @@ def add_picture(parser: argparse.ArgumentParser) -> None:
         help="auto, front, back, left, right, top, bottom, oblique, or 9 numbers with commas: "
         "position, target, up; a 10th is the angle of view in degrees",
     )
-    group.add_argument("--background", metavar="COLOR", help="name or #rrggbb")
+    group.add_argument("--background", metavar="COLOR", help="name, #rrggbb, or transparent")
 
 
 def add_colors(parser: argparse.ArgumentParser, several: bool = False) -> None:

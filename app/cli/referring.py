@@ -44,7 +44,7 @@ class Reference:
 
         Parameters
         ----------
-        image : ndarray of uint8, shape=(height, width, 3)
+        image : ndarray of uint8, shape=(height, width, 3 or 4)
             What was made.
         record : Record
             How.

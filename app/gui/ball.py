@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from app.gui.aiming import from_ball, on_ball, turned
-from app.gui.keys import kept
+from app.gui.display import encoded
 from app.gui.lights import displayed
 from app.session import Vector
 
@@ -148,10 +148,6 @@ class Ball(QWidget):
             self._dragged = False
             self.released.emit()
 
-    def event(self, event: QEvent) -> bool:
-        """Keep the arrow keys from the shortcuts of the window."""
-        return kept(event, tuple(_KEYS)) or bool(super().event(event))
-
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Turn the chosen light by the arrow keys."""
         way = _KEYS.get(Qt.Key(event.key()))
@@ -175,8 +171,6 @@ def _step(start: QPointF, end: QPointF) -> tuple[float, float]:
 
 def _shaded(side: int, lights: Sequence[tuple[int, Vector, Vector]]) -> NDArray[np.uint8]:
     """Return a matt ball under the lights, RGBA."""
-    from lutcore.color import srgb_bytes
-
     line = (2.0 * np.arange(side) + 1.0) / side - 1.0
     x, y = np.meshgrid(line, -line)
     inside = x * x + y * y <= 1.0
@@ -188,6 +182,6 @@ def _shaded(side: int, lights: Sequence[tuple[int, Vector, Vector]]) -> NDArray[
         light += np.maximum(normals @ towards, 0.0)[..., None] * np.asarray(rgb)
     exposure = 0.8 / max(1.0, *(max(rgb) for *_, rgb in lights)) if lights else 0.8
     pixels = np.zeros((side, side, 4), dtype=np.uint8)
-    pixels[..., :3] = srgb_bytes(light.reshape(-1, 3), exposure).reshape(side, side, 3)
+    pixels[..., :3] = np.rint(255.0 * encoded(exposure * light))
     pixels[..., 3] = np.where(inside, 255, 0)
     return pixels

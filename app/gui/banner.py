@@ -20,7 +20,8 @@ class Banner(QFrame):
         self.setObjectName("banner")
         self.setStyleSheet(
             "#banner { background: #8a2f24; } #banner QLabel, #banner QToolButton { color: white; }"
-            " #answer { background: transparent; border: 1px solid white; padding: 1px 8px; }"
+            " #answer, #details { background: transparent; border: 1px solid white;"
+            " padding: 1px 8px; }"
         )
         self.label = QLabel(self)
         self.label.setWordWrap(True)
@@ -35,32 +36,36 @@ class Banner(QFrame):
         close.clicked.connect(self._on_close)
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 4, 4)
-        self.button = QToolButton(self)
-        self.button.setObjectName("answer")
-        self.button.setAccessibleName("Answer to the message")
-        self.button.hide()
+        self.details = self._button("Copy details", "details")
+        self.details.setToolTip("Copy where it was raised, and the versions of what runs")
+        self.button = self._button("Answer to the message", "answer")
+        self.details.clicked.connect(self._on_details)
         self.button.clicked.connect(self._on_button)
-        self._answer: Callable[[], None] | None = None
+        self._offer: tuple[str, str, Callable[[], None]] | None = None
+        self._copy: Callable[[], None] | None = None
         row.addWidget(self.label, 1)
-        row.addWidget(self.button, 0, Qt.AlignmentFlag.AlignTop)
-        row.addWidget(close, 0, Qt.AlignmentFlag.AlignTop)
+        for one in (self.details, self.button, close):
+            row.addWidget(one, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()
 
     @property
     def offering(self) -> bool:
         """Whether it waits for an answer."""
-        return self._answer is not None
+        return self._offer is not None
 
-    def warn(self, text: str) -> None:
-        """Show a message.
+    def warn(self, text: str, copy: Callable[[], None] | None = None) -> None:
+        """Show a message; what is offered comes back when it is closed.
 
         Parameters
         ----------
         text : str
             What is wrong, where, and what to do.
+        copy : callable, optional
+            Copies its details.
         """
-        self._answer = None
+        self._copy = copy
         self.button.hide()
+        self.details.setVisible(copy is not None)
         self.label.setText(text)
         self.show()
 
@@ -76,19 +81,36 @@ class Banner(QFrame):
         call : callable
             Does it; the message goes away.
         """
+        self._offer = text, answer, call
         self.label.setText(text)
         self.button.setText(answer)
         self.button.setAccessibleName(answer)
-        self._answer = call
+        self.details.hide()
         self.button.show()
         self.show()
 
+    def _button(self, text: str, name: str) -> QToolButton:
+        made = QToolButton(self)
+        made.setObjectName(name)
+        made.setText(text)
+        made.setAccessibleName(text)
+        made.hide()
+        return made
+
     def _on_close(self) -> None:
-        self._answer = None
+        waiting = self._offer
+        if waiting is not None and self.button.isHidden():
+            self.offer(*waiting)
+            return
+        self._offer = None
         self.hide()
 
+    def _on_details(self) -> None:
+        if self._copy is not None:
+            self._copy()
+
     def _on_button(self) -> None:
-        answer, self._answer = self._answer, None
+        waiting, self._offer = self._offer, None
         self.hide()
-        if answer is not None:
-            answer()
+        if waiting is not None:
+            waiting[2]()

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import vtkmodules.vtkRenderingFreeType
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  registers the OpenGL classes
@@ -14,15 +14,18 @@ from vtkmodules.qt.QVTKRenderWindowInteractor import QVTKRenderWindowInteractor
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from app.backend import Backend, backend_of
+from app.composition import Composition
 from app.gui import orbit
+from app.gui.background import lay_checks, on_screen
 from app.gui.coarse import Coarse
 from app.gui.stand_in import StandIn
-from app.picture import Composition
 from app.render import Drawn, Panel, fill, refill_bar
 from app.scene import ColorScale, Surface, aim, recolor
 from app.session import Camera, Vector
-from app.shader.drawing import PixelLight
-from app.shader.look import PixelLook
+
+if TYPE_CHECKING:
+    from app.shader.drawing import PixelLight
+    from app.shader.look import PixelLook
 
 # Slower than this a moving picture is no longer seen as moving.
 _SLOW = 1.0 / 15.0
@@ -158,7 +161,7 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self._fill(made, before)
         self.update()
 
-    def shade_by_pixel(self, look: PixelLook | None) -> None:
+    def shade_by_pixel(self, look: "PixelLook | None") -> None:
         """Shade the first mesh in the fragment shader, or show the colours of its vertices.
 
         Parameters
@@ -174,6 +177,8 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
         if look is None or made is None or camera is None or made.exposure is None:
             return
         if self.drawn and self.drawn[0].actor is not None:
+            from app.shader.drawing import PixelLight  # which needs compiled code
+
             coarse = self._stand_in.of(0)
             actors = [(self.drawn[0].actor, None), *([coarse] if coarse else [])]
             self.by_pixel = PixelLight(
@@ -260,6 +265,15 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self.shade_by_pixel(look)
             self.recolored.emit()
 
+    def draw(self) -> None:
+        """Draw a frame now."""
+        if self.backend is not None:
+            # Pictures are drawn in windows off the screen, on this thread: they leave OpenGL in
+            # another state than this window remembers, and its next frame would lack parts.
+            self.window_.MakeCurrent()
+            self.window_.GetState().Reset()
+        self.window_.Render()
+
     def stir(self) -> None:
         """Say that something moves: what is slow to draw is drawn coarsely until it rests."""
         if self._frame > _SLOW:
@@ -285,7 +299,10 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
             self.origin = made.camera.target
             self._frame = 0.0
         panels, size = made.panels, tuple(window.GetSize())
-        self.drawn = fill(window, panels, size, made.session.background, made.rows, self.origin)
+        background = on_screen(made.session.background)
+        self.drawn = fill(window, panels, size, background, made.rows, self.origin)
+        if background != made.session.background:
+            lay_checks(window, self.devicePixelRatioF())
         self._stand_in.fill(self.drawn, self.origin)
         self._aim()
         self.filled.emit()
@@ -311,7 +328,7 @@ class Canvas(QVTKRenderWindowInteractor):  # type: ignore[misc]  # no types in V
     def paintEvent(self, event: QEvent | None) -> None:  # noqa: N802
         """Draw, and note how long it took."""
         start = time.perf_counter()
-        self.window_.Render()
+        self.draw()
         seconds = time.perf_counter() - start
         if self.backend is None and self.drawn:
             self._know_backend()

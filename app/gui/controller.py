@@ -1,5 +1,6 @@
 """What the window does, without a window: one document, one worker, one picture. Knows no Qt."""
 
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,12 +18,13 @@ from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 
 if TYPE_CHECKING:
-    from app.picture import Composition
+    from app.composition import Composition
     from lutcore.curvature import PrincipalCurvatures
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
 _AUTO = "auto"  # that of `lutcore.shading`, which takes a while to load
+_GREY = 1.0  # s that the worker waits for the first frame at most
 # A change of anything else leaves what is being computed of use: it is seen while dragging.
 _LIVE = {
     "lights",
@@ -94,6 +96,8 @@ class Controller:
     """Emitted with the `Outcome` when a picture is ready."""
     failed = Signal(str)
     """Emitted with a message when something a person asked for could not be done."""
+    faulted = Signal(object)
+    """Emitted with an exception that is a fault in the program; see `app.gui.faults`."""
     noted = Signal(str)
     """Emitted with a remark for the log."""
     standing = Signal(object)
@@ -140,9 +144,10 @@ class Controller:
 
         def opened(_: Subject) -> None:
             if file is None:
-                unchanged = self.document.path is None and not self.document.dirty
+                clean = not self.document.dirty
                 self.document.put("open mesh", session)
-                if unchanged:
+                if clean:  # nothing is lost with it; and no session file says it
+                    self.document.path = None
                     self.document.rest()
             else:
                 self.document.open(session, file)
@@ -206,6 +211,20 @@ class Controller:
             self.failed.emit(str(error))
             return False
         return True
+
+    def complete(self, label: str, **fields: Any) -> None:
+        """Change fields to what is known of the mesh anyway: nobody loses it, so none need save it.
+
+        Parameters
+        ----------
+        label : str
+            See `change`.
+        **fields : object
+            New values, which can be.
+        """
+        clean = not self.document.dirty
+        if self.change(label, **fields) and clean:
+            self.document.rest()
 
     def look(self, camera: str | Camera) -> None:
         """Move the camera.
@@ -290,6 +309,11 @@ class Controller:
 
         self.worker.submit(key, with_progress, done, failed or self.on_failed, supersede)
 
+    def cancel(self) -> None:
+        """Stop what runs, and drop what waits."""
+        self.worker.cancel()
+        self.aside.cancel()
+
     def close(self) -> None:
         """End the workers."""
         self.worker.close()
@@ -301,8 +325,7 @@ class Controller:
             if self._subject is None:
                 from app.gui.preview import preview
 
-                grey = preview(session, subject)
-                self.worker.post(lambda: self.previewed.emit(grey))
+                self._show_grey(preview(session, subject))
             self._subject = subject
             self.worker.post(lambda: self.loaded.emit(subject))
         from app.camera import axes
@@ -327,6 +350,17 @@ class Controller:
             settled,
         )
 
+    def _show_grey(self, grey: "Composition") -> None:
+        """Have it on the screen before going on: what is loaded next takes all of Python's time."""
+        seen = threading.Event()
+
+        def show() -> None:
+            self.previewed.emit(grey)
+            seen.set()
+
+        self.worker.post(show)
+        seen.wait(_GREY)
+
     def _on_change(self, session: Session, before: Session) -> None:
         changed = {name for name in Session.__struct_fields__ if _differ(session, before, name)}
         if changed and not (self.follows and self.follows(changed)):
@@ -344,7 +378,10 @@ class Controller:
         error : Exception
             What was raised.
         """
-        self.failed.emit(message_of(error))
+        if isinstance(error, CurvelightError | MemoryError):
+            self.failed.emit(message_of(error))
+        else:
+            self.faulted.emit(error)
 
 
 def message_of(error: Exception) -> str:

@@ -53,7 +53,8 @@ class Document:
         self._steps = [Step("open", session)]
         self._at = 0
         self._session = session
-        self._saved = session
+        # States that need no saving: those of files, and what they become by opening a mesh.
+        self._safe = [_without_camera(session)]
         self._last: tuple[str, float] = ("", 0.0)
         self._drags = 0
         self.path: Path | None = None
@@ -66,7 +67,7 @@ class Document:
     @property
     def dirty(self) -> bool:
         """Whether there are changes, camera apart, that no file holds."""
-        return _without_camera(self._session) != _without_camera(self._saved)
+        return _without_camera(self._session) not in self._safe
 
     @property
     def undo_label(self) -> str | None:
@@ -147,7 +148,7 @@ class Document:
 
     def rest(self) -> None:
         """Take the state as it is for one that needs no saving: nothing of it was made here."""
-        self._saved = self._session
+        self._safe = [*self._safe[1 - _MOST_STEPS :], _without_camera(self._session)]
         self.history_changed.emit()
 
     def begin_drag(self) -> None:
@@ -194,7 +195,7 @@ class Document:
         """
         self._steps, self._at = [Step("open", session)], 0
         self._last = ("", 0.0)
-        self._saved, self.path = session, path
+        self._safe, self.path = [_without_camera(session)], path
         self._show(session)
 
     def save(self, path: Path, settled: tuple[Settled, ...] = ()) -> None:
@@ -213,7 +214,7 @@ class Document:
             If it cannot be written.
         """
         state.write(replace(self._session, settled=settled), path)
-        self._saved, self.path = self._session, path
+        self._safe, self.path = [_without_camera(self._session)], path
         self.history_changed.emit()
 
     def _return(self) -> None:

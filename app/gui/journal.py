@@ -25,8 +25,8 @@ class Journal:
 
     def __init__(self, controller: Controller) -> None:
         self._lines: deque[str] = deque(maxlen=MOST_LINES)
-        controller.failed.connect(self._add)
-        controller.noted.connect(self._add)
+        controller.failed.connect(self.add)
+        controller.noted.connect(self.add)
         controller.loaded.connect(self._on_loaded)
 
     @property
@@ -36,11 +36,18 @@ class Journal:
 
     def _on_loaded(self, subject: Subject) -> None:
         mesh, name = subject.mesh, subject.loaded.path.name
-        self._add(f"{name}: {len(mesh.vertices)} vertices, {len(mesh.faces)} faces")
+        self.add(f"{name}: {len(mesh.vertices)} vertices, {len(mesh.faces)} faces")
         for warning in subject.warnings:
-            self._add(f"{name}: {warning}")
+            self.add(f"{name}: {warning}")
 
-    def _add(self, text: str) -> None:
+    def add(self, text: str) -> None:
+        """Keep a line.
+
+        Parameters
+        ----------
+        text : str
+            What was said.
+        """
         line = f"{time.strftime('%H:%M:%S')}  {text}"
         self._lines.append(line)
         self.added.emit(line)

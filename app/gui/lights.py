@@ -11,6 +11,7 @@ from app.camera import axes
 from app.gui import orbit
 from app.gui.aiming import kept_in, seen_by, turned
 from app.gui.controller import Controller
+from app.gui.display import encoded
 from app.session import Camera, Cone, Directional, Frame, Point, Session, Vector
 
 AnyLight = Directional | Point | Cone
@@ -268,7 +269,5 @@ def displayed(rgb: Vector) -> Vector:
     tuple of 3 floats
         sRGB-encoded, 0 to 1; black for no light.
     """
-    from lutcore.color import srgb_encode
-
     most = max(rgb)
-    return orbit.vector(srgb_encode(np.asarray(rgb) / most)) if most > 0.0 else (0.0, 0.0, 0.0)
+    return orbit.vector(encoded(np.asarray(rgb) / most)) if most > 0.0 else (0.0, 0.0, 0.0)

@@ -36,6 +36,7 @@ def run(argument: str | None) -> int:
     application = QApplication.instance() or QApplication(sys.argv[:1])
     application.setApplicationName("Curvelight")
     window = Window()
+    window.faults.install()
     theme.apply(theme.chosen(window.settings))
     window.show()
     window.rescue.offer()

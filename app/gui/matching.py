@@ -16,9 +16,12 @@ def ranked(typed: str, names: Sequence[str]) -> list[int]:
     Returns
     -------
     list of int
-        Indices: names in which the letters stand closer together and begin words come first.
+        Indices: names in which the letters stand closer together and begin words come first; in
+        their own order where nothing is typed.
     """
     letters = typed.lower().replace(" ", "")
+    if not letters:  # the shortest is nobody's wish
+        return list(range(len(names)))
     scores = [(_score(letters, name.lower()), index) for index, name in enumerate(names)]
     return [index for score, index in sorted(scores) if score >= 0.0]
 

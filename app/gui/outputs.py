@@ -95,7 +95,7 @@ def copy_picture(window: "Window") -> None:
     """
 
     def copied(image: "Image") -> None:
-        height, width, _ = image.shape
+        height, width = image.shape[:2]
         QGuiApplication.clipboard().setImage(_qimage(image))
         window.controller.noted.emit(f"copied a picture of {width} x {height} pixels")
 
@@ -117,9 +117,8 @@ def save_screenshot(window: "Window", path: Path) -> None:
     from app.render import grab
     from app.writing import WriteError, replacing
 
-    shown = window.canvas.window_
-    shown.Render()
-    image = grab(shown, _view_size(window))
+    window.canvas.draw()
+    image = grab(window.canvas.window_, _view_size(window))
     try:
         with replacing(path) as beside_it:
             Pillow.fromarray(image).save(beside_it, format="PNG", compress_level=1)
@@ -170,11 +169,15 @@ def copy_script(window: "Window") -> None:
 
 def _save_picture(window: "Window") -> None:
     controller = window.controller
-    dialog = PictureDialog(window, controller.session.size, _view_size(window))
+    background = window.background
+    dialog = PictureDialog(
+        window, controller.session.size, _view_size(window), background.transparent
+    )
     if dialog.exec() != QDialog.DialogCode.Accepted:
         return
     path = _asked(window, "Save picture", "PNG pictures (*.png)", (_PICTURE,), "")
-    if path is not None and controller.change("picture size", size=dialog.chosen):
+    fields = {"size": dialog.chosen, "background": background.named(dialog.clear.isChecked())}
+    if path is not None and controller.change("picture", **fields):
         save_picture(controller, path)
 
 
@@ -209,6 +212,7 @@ def _view_size(window: "Window") -> tuple[int, int]:
 
 
 def _qimage(image: "Image") -> QImage:
-    height, width, _ = image.shape
+    height, width, channels = image.shape
+    formats = {3: QImage.Format.Format_RGB888, 4: QImage.Format.Format_RGBA8888}
     # A copy: the array's memory does not outlive it.
-    return QImage(image.tobytes(), width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+    return QImage(image.tobytes(), width, height, channels * width, formats[channels]).copy()

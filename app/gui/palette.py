@@ -8,6 +8,7 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QKeyEvent
 from qtpy.QtWidgets import QDialog, QLineEdit, QListWidget, QListWidgetItem, QVBoxLayout
 
+from app.gui.fitting import fit
 from app.gui.matching import ranked
 from app.session import Method
 
@@ -42,7 +43,7 @@ class Palette(QDialog):
         column = QVBoxLayout(self)
         column.addWidget(self.line)
         column.addWidget(self.list)
-        self.resize(window.width() // 2, window.height() // 2)
+        fit(self, window.width() / 2, window.height() / 2)
         self._on_text("")
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802

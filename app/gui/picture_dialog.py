@@ -1,6 +1,7 @@
-"""Asks how large a picture is to be."""
+"""Asks how large a picture is to be, and whether something lies behind."""
 
 from qtpy.QtWidgets import (
+    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFormLayout,
@@ -14,7 +15,7 @@ _LEAST, _MOST = 16, 16384  # of `Session.size`
 
 
 class PictureDialog(QDialog):
-    """Width and height of a picture.
+    """Width, height and background of a picture.
 
     Parameters
     ----------
@@ -24,9 +25,13 @@ class PictureDialog(QDialog):
         What is proposed, pixels.
     view : tuple of 2 ints
         The size of the view, pixels.
+    transparent : bool
+        Whether no background is proposed.
     """
 
-    def __init__(self, parent: QWidget, size: tuple[int, int], view: tuple[int, int]) -> None:
+    def __init__(
+        self, parent: QWidget, size: tuple[int, int], view: tuple[int, int], transparent: bool
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Save picture")
         self._view = view
@@ -37,6 +42,9 @@ class PictureDialog(QDialog):
         form.addRow("&Height", self.height_box)
         self.once = self._preset("Size of the view", 1)
         self.twice = self._preset("Twice the size of the view", 2)
+        self.clear = QCheckBox("&Transparent background", self)
+        self.clear.setToolTip("Have nothing behind the mesh: the PNG gets an alpha channel")
+        self.clear.setChecked(transparent)
         buttons = QDialogButtonBox.StandardButton
         self.buttons = QDialogButtonBox(buttons.Ok | buttons.Cancel, self)
         self.buttons.accepted.connect(self.accept)
@@ -45,6 +53,7 @@ class PictureDialog(QDialog):
         column.addLayout(form)
         column.addWidget(self.once)
         column.addWidget(self.twice)
+        column.addWidget(self.clear)
         column.addWidget(self.buttons)
 
     @property

@@ -8,9 +8,9 @@ from math import inf
 from qtpy.QtCore import QObject, QTimer
 
 from app.camera import axes
+from app.composition import Composition
 from app.gui.canvas import Canvas
 from app.leaving import leaving
-from app.picture import Composition
 from app.pipeline import Pipeline
 from app.shader.look import PixelLook
 

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.camera import camera_of
+from app.composition import Composition
 from app.render import STRIP, Panel
 from app.scene import Surface
 from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from app.picture import Composition
     from app.pipeline import Subject
     from app.session import Session
 
 
-def preview(session: "Session", subject: "Subject") -> "Composition":
+def preview(session: "Session", subject: "Subject") -> Composition:
     """Return a composition that shows a mesh in grey.
 
     Parameters
@@ -34,8 +34,6 @@ def preview(session: "Session", subject: "Subject") -> "Composition":
     Composition
         One panel.
     """
-    from app.picture import Composition
-
     width, height = session.size
     camera = camera_of(session.camera, subject, width / (height * (1.0 - STRIP)))
     surface = Surface(subject.mesh, _normals(subject.mesh), lit=True)

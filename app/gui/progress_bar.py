@@ -1,12 +1,15 @@
 """Where long work stands, with a way to stop it."""
 
+import time
 from collections.abc import Callable
 
+from qtpy.QtCore import QTimer
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
 
 from app.gui.worker import Standing
 
 _PATIENCE = 0.3  # shorter work shows nothing
+_TICK = 200  # ms: the time goes on where a step takes long and says nothing
 
 
 class ProgressBar(QWidget):
@@ -35,6 +38,11 @@ class ProgressBar(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         for part in (self.label, self.bar, self.button):
             row.addWidget(part)
+        self._start = 0.0
+        self._step = ""
+        self._ticking = QTimer(self)
+        self._ticking.setInterval(_TICK)
+        self._ticking.timeout.connect(self._on_tick)
         self.hide()
 
     def tell(self, standing: Standing | None) -> None:
@@ -46,8 +54,19 @@ class ProgressBar(QWidget):
             None hides the bar.
         """
         if standing is None:
+            self._ticking.stop()
             self.hide()
-        elif standing.seconds > _PATIENCE:
-            self.label.setText(f"{standing.step}, {standing.seconds:.1f} s")
-            self.bar.setValue(round(100.0 * standing.share))
+            return
+        self._start = time.monotonic() - standing.seconds
+        self._step = standing.step
+        self.bar.setValue(round(100.0 * standing.share))
+        self._ticking.start()
+        self._show(standing.seconds)
+
+    def _on_tick(self) -> None:
+        self._show(time.monotonic() - self._start)
+
+    def _show(self, seconds: float) -> None:
+        if seconds > _PATIENCE:
+            self.label.setText(f"{self._step}, {seconds:.1f} s")
             self.show()

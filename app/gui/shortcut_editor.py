@@ -17,11 +17,14 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from app.gui.fitting import fit
+
 if TYPE_CHECKING:
     from app.gui.window import Window
 
 _NAME = Qt.ItemDataRole.UserRole
 _PORTABLE = QKeySequence.SequenceFormat.PortableText
+_GAP = 16
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 
 
@@ -70,7 +73,11 @@ class ShortcutEditor(QDialog):
         self.key.keySequenceChanged.connect(lambda *_: self._check())
         self.assign.clicked.connect(self._on_assign)
         self.list.setCurrentItem(self.list.topLevelItem(0))
-        self.resize(round(window.width() * 0.55), round(window.height() * 0.8))
+        # Apart: what stands in one column must not run into the next.
+        for column in range(2):
+            self.list.setColumnWidth(column, self.list.columnWidth(column) + _GAP)
+        width = max(window.width() * 0.55, self.list.header().length() + 60)
+        fit(self, width, window.height() * 0.8)
 
     def choose(self, name: str) -> None:
         """Choose an action.

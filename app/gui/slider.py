@@ -2,20 +2,11 @@
 
 import math
 
-from qtpy.QtCore import QEvent, QSize, Qt, Signal
+from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtGui import QValidator
 from qtpy.QtWidgets import QDoubleSpinBox, QHBoxLayout, QSizePolicy, QSlider, QSpinBox, QWidget
 
-from app.gui.keys import kept
-
 _STEPS = 1000
-_ENDS = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
-_ARROWS = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Up, Qt.Key.Key_Down)
-
-
-class _Bar(QSlider):
-    def event(self, event: QEvent) -> bool:
-        return kept(event, _ARROWS) or bool(super().event(event))
 
 
 class Number(QDoubleSpinBox):
@@ -26,10 +17,6 @@ class Number(QDoubleSpinBox):
         self.setDecimals(9)
         self.setKeyboardTracking(False)
         self.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
-
-    def event(self, event: QEvent) -> bool:
-        """Keep Return, which ends what is typed, from the shortcuts of the window."""
-        return kept(event, _ENDS) or bool(super().event(event))
 
     def sizeHint(self) -> QSize:  # noqa: N802
         """Return room for four digits with their unit, whatever the range."""
@@ -76,10 +63,6 @@ class Whole(QSpinBox):
         self.setGroupSeparatorShown(True)
         self.setStepType(QSpinBox.StepType.AdaptiveDecimalStepType)
 
-    def event(self, event: QEvent) -> bool:
-        """Keep Return, which ends what is typed, from the shortcuts of the window."""
-        return kept(event, _ENDS) or bool(super().event(event))
-
 
 class Slider(QWidget):
     """A value from a range: dragged roughly, or typed exactly.
@@ -120,7 +103,7 @@ class Slider(QWidget):
     ) -> None:
         super().__init__()
         self._low, self._high, self._logarithmic, self._zero = low, high, logarithmic, zero
-        self.slider = _Bar(Qt.Orientation.Horizontal, self)
+        self.slider = QSlider(Qt.Orientation.Horizontal, self)
         self.slider.setRange(0, _STEPS)
         self.slider.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.number = Number(self)

@@ -5,10 +5,11 @@ from typing import Literal
 from qtpy.QtCore import QObject, Qt, Signal
 
 from app import wipe_shader
+from app.ground import ground
 from app.gui.canvas import Canvas, Place
 from app.gui.divider import RADIUS, Divider
 from app.render import Drawn
-from app.scene import Surface, Wipe, color
+from app.scene import Surface, Wipe
 from app.wiping import column, line_color
 
 Shown = Literal["both", "first", "second"]
@@ -112,7 +113,7 @@ class Swipe(QObject):
         self._divider = None
         drawn, made = self.drawn, self._canvas.composition
         if drawn is not None and made is not None:
-            grey = line_color(color(made.session.background))
+            grey = line_color(ground(made.session.background))
             self._divider = Divider(grey, self._canvas.devicePixelRatioF())
             self._divider.put(drawn.renderer)
         self._on_recolored()

@@ -4,7 +4,6 @@ from qtpy.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QLabel,
-    QPushButton,
     QSizePolicy,
     QToolButton,
     QWidget,
@@ -34,9 +33,10 @@ class UnitBar(QFrame):
         self.label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
         row = QHBoxLayout(self)
         row.addWidget(self.label, 1)
-        self.buttons: dict[str, QPushButton] = {}
+        self.buttons: dict[str, QToolButton] = {}
         for unit, size in UNITS.items():
-            button = self.buttons[unit] = QPushButton(unit, self)
+            button = self.buttons[unit] = QToolButton(self)  # as narrow as its word
+            button.setText(unit)
             button.setAccessibleName(f"Its unit is {unit}")
             button.clicked.connect(lambda _=False, size=size: units.answer(size))
             row.addWidget(button)

@@ -50,7 +50,7 @@ class Units:
         self._subject = None
         self.asked.emit(None)
         if mm_per_unit is not None:
-            self._controller.change("unit", mm_per_unit=mm_per_unit)
+            self._controller.complete("unit", mm_per_unit=mm_per_unit)  # it is remembered
 
     def _on_loaded(self, subject: Subject) -> None:
         self._subject = None
@@ -61,7 +61,7 @@ class Units:
         if subject.loaded.digest in known:
             remembered = known[subject.loaded.digest]
             if isinstance(remembered, float | int) and remembered > 0:
-                self._controller.change("unit", mm_per_unit=float(remembered))
+                self._controller.complete("unit", mm_per_unit=float(remembered))
             return
 
         def found(health: MeshHealth) -> None:

@@ -1,5 +1,6 @@
 """Which sessions compare what: the steps that a person takes, as changes of fields. Knows no Qt."""
 
+from functools import cache
 from typing import Any
 
 from msgspec.structs import replace
@@ -19,6 +20,18 @@ _PLAIN: dict[ComparedBy, tuple[str, str]] = {
 }
 
 
+@cache
+def _plugins(by: ComparedBy) -> tuple[str, ...]:
+    """Ask once what is installed: it takes 20 ms, and a form follows every move of the camera."""
+    if by == "model":
+        from lutcore.shading import model_registry
+
+        return tuple(model_registry.names())
+    from lutcore.estimation import estimator_registry
+
+    return tuple(estimator_registry.names())
+
+
 def names(session: Session, by: ComparedBy) -> list[str]:
     """Return the names that can be compared.
 
@@ -34,14 +47,8 @@ def names(session: Session, by: ComparedBy) -> list[str]:
     list of str
         In the order of the lists elsewhere.
     """
-    if by == "model":
-        from lutcore.shading import model_registry
-
-        return model_registry.names()
-    if by == "estimator":
-        from lutcore.estimation import estimator_registry
-
-        return estimator_registry.names()
+    if by != "material":
+        return list(_plugins(by))
     from lutcore.materials import materials
 
     known, own = list(materials()), _current(session, "material").name

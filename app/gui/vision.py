@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from psygnal import Signal
 
+from app.gui import display
 from app.scene import ColorScale, Surface
 from lutcore.arrays import FloatArray
-from lutcore.color import srgb_decode, srgb_encode
 
 if TYPE_CHECKING:
+    from app.composition import Composition
     from app.gui.controller import Controller
-    from app.picture import Composition
     from app.render import Panel
 
 KINDS = {
@@ -113,7 +113,9 @@ def simulated(encoded: FloatArray, found: FloatArray) -> FloatArray:
     ndarray, shape=(n, 3)
         sRGB-encoded, 0 to 1.
     """
-    return srgb_encode(np.clip(srgb_decode(encoded) @ found.T, 0.0, 1.0))
+    from lutcore.color import srgb_decode
+
+    return display.encoded(np.clip(srgb_decode(encoded) @ found.T, 0.0, 1.0))
 
 
 def _panel(panel: "Panel", found: FloatArray) -> "Panel":

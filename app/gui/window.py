@@ -8,14 +8,19 @@ from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
+from app.composition import Composition
 from app.gui import docks, menus
 from app.gui.actions import MENUS, Action, Actions
+from app.gui.background import Background
 from app.gui.banner import Banner
 from app.gui.canvas import Canvas
 from app.gui.coarse import coarse
 from app.gui.comparing import Comparing
 from app.gui.controller import SESSION_SUFFIX, Controller, Outcome
+from app.gui.faults import Faults
+from app.gui.fitting import fit
 from app.gui.journal import Journal
+from app.gui.keys import Keys
 from app.gui.layout import Layout
 from app.gui.light_tool import LightTool
 from app.gui.lights import Lights
@@ -30,7 +35,6 @@ from app.gui.unit_bar import UnitBar
 from app.gui.units import Units
 from app.gui.unsaved import Answer, ask, may_leave
 from app.gui.vision import Vision
-from app.picture import Composition
 from app.pipeline import Subject
 from app.session import Camera, Session
 
@@ -81,12 +85,14 @@ class Window(QMainWindow):
         self.controller = Controller(self._poster.post, session)
         self.journal = Journal(self.controller)
         self.setAcceptDrops(True)
-        self.resize(1280, 800)
+        fit(self, 1280, 800)
         self.canvas = Canvas(self)
+        self.background = Background(self.controller)
         self.lights = Lights(self.controller, lambda: self.canvas.camera)
         self.light_tool = LightTool(self.canvas, self.controller, self.lights)
         self.canvas.tools.append(self.light_tool)
         self.banner = Banner(self)
+        self.faults = Faults(self)
         middle = QWidget(self)
         column = QVBoxLayout(middle)
         column.setContentsMargins(0, 0, 0, 0)
@@ -98,13 +104,14 @@ class Window(QMainWindow):
         column.addWidget(self.unit_bar)
         column.addWidget(self.canvas, 1)
         self.setCentralWidget(middle)
-        self.progress = ProgressBar(self, self.controller.worker.cancel)
+        self.progress = ProgressBar(self, self.controller.cancel)
         self.statusBar().addPermanentWidget(self.progress)
         self._connect()
         self.pixel_path = PixelPath(self.controller, self.canvas, self.settings)
         self.statusBar().addPermanentWidget(Status(self.canvas, lambda: self.pixel_path.reason))
         self.comparing = Comparing(self.controller, self.canvas)
         self.docks = docks.add_all(self)
+        self.keys = Keys(self)
         self.actions_ = Actions()
         self.shortcuts = Shortcuts(self.actions_, self.settings)
         self.shortcuts.changed.connect(self._on_shortcut)
@@ -143,6 +150,7 @@ class Window(QMainWindow):
     def _on_previewed(self, grey: Composition) -> None:
         if self.controller.outcome is None:
             self.canvas.show_composition(grey, grey.camera)
+            self.canvas.repaint()
 
     def _on_shown(self, outcome: Outcome) -> None:
         # The camera may have moved on while the colours were computed.
@@ -242,6 +250,7 @@ class Window(QMainWindow):
         if event.spontaneous() and not may_leave(self):
             event.ignore()
             return
+        self.faults.remove()
         self.rescue.close()
         self.layout_.keep()
         self.controller.close()

@@ -139,6 +139,7 @@ class Worker:
                 self._say(None)
 
     def _do(self, task: _Task[object]) -> None:
+        self._say(Standing(0.0, "computing", 0.0))  # before the job says anything
         try:
             result = task.job(self._reporter(task))
         except CancelledError:

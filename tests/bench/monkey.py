@@ -47,9 +47,7 @@ def _run(given: argparse.Namespace, meshes: list[str]) -> None:
     application = QApplication([])
     without_dialogs(setattr)
     window = Window(Session(mesh=meshes[0]))
-    window.controller.failed.connect(
-        lambda text: exceptions.append(text) if "fault in the program" in text else None
-    )
+    window.faults.told.connect(exceptions.append)
     window.show()
     window.start()
     while window.controller.outcome is None:

@@ -8,7 +8,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QSize, Qt
 from qtpy.QtWidgets import QDockWidget, QScrollArea, QTabWidget, QWidget
 
 if TYPE_CHECKING:
@@ -19,6 +19,21 @@ _AREAS = {
     "right": Qt.DockWidgetArea.RightDockWidgetArea,
     "bottom": Qt.DockWidgetArea.BottomDockWidgetArea,
 }
+_SHARE = 0.28
+
+
+class _Scroll(QScrollArea):
+    """Shows what there is room for; a dock at the bottom leaves most of the height to the view."""
+
+    def __init__(self, dock: "Dock") -> None:
+        super().__init__(dock)
+        self._low = dock.area == "bottom"
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Return what the content wants, bounded at the bottom."""
+        hint = super().sizeHint()
+        most = round(_SHARE * self.window().height())
+        return QSize(hint.width(), min(hint.height(), most)) if self._low else hint
 
 
 class Dock(QDockWidget):
@@ -55,7 +70,7 @@ class Dock(QDockWidget):
         """
         if self.content is None:
             self.content = self._module.build(self._window)
-            scroll = QScrollArea(self)
+            scroll = _Scroll(self)
             scroll.setWidgetResizable(True)
             scroll.setFrameShape(QScrollArea.Shape.NoFrame)
             scroll.setWidget(self.content)

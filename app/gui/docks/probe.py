@@ -139,6 +139,7 @@ class ProbePanel(QSplitter):
         self.values.clear()
         if found is None:
             self._add("Point at the mesh", "")
+            self._widen()
             return
         x, y, z = found.position
         self._add("vertex", str(found.vertex))
@@ -154,11 +155,14 @@ class ProbePanel(QSplitter):
             words = ", ".join(map(str, one.color))
             error_words = "" if one.error is None else f"{100.0 * one.error:.2g} % of R_d"
             self._add(one.model, words, error_words).setIcon(1, _swatch(one.color))
-        for column in range(3):
-            self.values.resizeColumnToContents(column)
+        self._widen()
         if self._pin_next:
             self._pin_next = False
             self.probing.pin()
+
+    def _widen(self) -> None:
+        for column in range(self.values.columnCount()):
+            self.values.resizeColumnToContents(column)
 
     def _add(self, name: str, value: str, more: str = "") -> QTreeWidgetItem:
         item = QTreeWidgetItem([name, value.strip(), more])

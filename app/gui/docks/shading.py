@@ -130,7 +130,8 @@ class ShadingPanel(QWidget):
         self.albedo.setChecked(session.albedo)
         self.flat.setChecked(session.flat)
         asked = session.material, session.profile
-        if asked != self._asked:
+        # Not before the first picture, which would wait for what this loads.
+        if self._offered and asked != self._asked:
             self._asked = asked
             self._ask_for_facts()
 
@@ -209,6 +210,4 @@ class ShadingPanel(QWidget):
             ]
             return lengths, [profile.total(one) for one in channels]
 
-        self._controller.run(
-            "facts", facts, lambda found: self.material.facts.tell(*found), failed=lambda _: None
-        )
+        self._controller.run("facts", facts, lambda found: self.material.facts.tell(*found))

@@ -1,17 +1,26 @@
 """Help: what the keys do, everything by name, and what this program is."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from qtpy.QtGui import QKeySequence
+from qtpy.QtGui import QFontMetrics, QKeySequence
 from qtpy.QtWidgets import QDialog, QLabel, QMessageBox, QScrollArea, QVBoxLayout
 
 from app.gui.actions import MENUS, Action
+from app.gui.fitting import fit
 
 if TYPE_CHECKING:
     from app.gui.window import Window
 
 ORDER = 10
+_LETTERS = 90
+_MOUSE = (
+    ("Left drag", "turn; with Ctrl roll, with Shift shift"),
+    ("Right drag", "shift"),
+    ("Wheel", "nearer, farther"),
+    ("L or Alt and drag", "turn the chosen light"),
+)
 
 
 def actions(window: "Window") -> list[Action]:
@@ -82,24 +91,25 @@ def keys_text(window: "Window") -> str:
     str
         Rich text: a table for each menu.
     """
-    parts = [
-        "<h3>Mouse</h3><table>",
-        "<tr><td><b>Left drag</b>&nbsp;&nbsp;</td>",
-        "<td>turn; with Ctrl roll, with Shift shift</td></tr>",
-        "<tr><td><b>Right drag</b></td><td>shift</td></tr>",
-        "<tr><td><b>Wheel</b></td><td>nearer, farther</td></tr>",
-        "<tr><td><b>L or Alt and drag</b></td><td>turn the chosen light</td></tr></table>",
-    ]
+    parts = [_table("Mouse", _MOUSE)]
     for menu in MENUS:
         rows = []
         for one in window.actions_:
             keys = window.qactions[one.name].shortcut()
             if one.menu.split("/")[0] == menu and not keys.isEmpty():
                 said = keys.toString(QKeySequence.SequenceFormat.NativeText)
-                rows.append(f"<tr><td><b>{said}</b>&nbsp;&nbsp;</td><td>{one.doc}</td></tr>")
+                rows.append((said, one.doc))
         if rows:
-            parts.append(f"<h3>{menu}</h3><table>{''.join(rows)}</table>")
+            parts.append(_table(menu, rows))
     return "".join(parts)
+
+
+def _table(title: str, rows: Sequence[tuple[str, str]]) -> str:
+    lines = (
+        f'<tr><td style="padding-right: 16px"><b>{what}</b></td><td>{doc}</td></tr>'
+        for what, doc in rows
+    )
+    return f"<h3>{title}</h3><table>{''.join(lines)}</table>"
 
 
 def _keys(window: "Window") -> None:
@@ -112,7 +122,9 @@ def _keys(window: "Window") -> None:
     scroll.setWidgetResizable(True)
     column = QVBoxLayout(sheet)
     column.addWidget(scroll)
-    sheet.resize(text.sizeHint().width() + 60, round(window.height() * 0.8))
+    text.setWordWrap(True)
+    wide = QFontMetrics(text.font()).averageCharWidth() * _LETTERS
+    fit(sheet, min(wide, window.width()), window.height() * 0.8)
     sheet.open()
 
 

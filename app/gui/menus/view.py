@@ -85,6 +85,21 @@ def actions(window: "Window") -> list[Action]:
             checked=partial(_is_parallel, window),
         ),
         *cameras,
+        Action(
+            "view.transparent",
+            "View",
+            "Transparent background",
+            "Have nothing behind the mesh: pictures that are saved or copied get an alpha channel",
+            window.background.toggle,
+            checked=lambda: window.background.transparent,
+        ),
+        Action(
+            "view.background",
+            "View",
+            "Background colour\N{HORIZONTAL ELLIPSIS}",
+            "Choose what colour lies behind the mesh",
+            partial(window.background.choose, window),
+        ),
         *_paths(window),
     ]
 

@@ -74,5 +74,5 @@ def pixels(window):
     from app.render import grab
 
     canvas = window.canvas
-    canvas.window_.Render()
+    canvas.draw()
     return grab(canvas.window_, tuple(canvas.window_.GetSize()))

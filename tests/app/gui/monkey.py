@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import psutil
-from qtpy.QtCore import QPoint, Qt, QTimer
+from qtpy.QtCore import QEvent, QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QAbstractButton,
@@ -108,6 +108,8 @@ class Monkey:
 
     def _events(self) -> None:
         QApplication.processEvents()
+        # What a loop of events would do, too: without one nothing that is to go ever goes.
+        QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
         time.sleep(0.002)
 
     def _action(self) -> str:

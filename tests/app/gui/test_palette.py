@@ -13,7 +13,7 @@ def test_letters_in_order_and_word_beginnings_come_first() -> None:
     names = ["View: Reset camera", "Material: cream", "File: Open", "Material: ream"]
     assert ranked("mcr", names)[0] == 1
     assert ranked("xyz", names) == []
-    assert ranked("", names) == [2, 3, 1, 0]  # nothing typed: the shortest first
+    assert ranked("", names) == [0, 1, 2, 3]
 
 
 def test_a_material_is_chosen_by_typing(window, qtbot) -> None:

@@ -7,10 +7,14 @@ import time
 
 import msgspec
 import numpy as np
+import pytest
 from qtpy.QtCore import Qt
 
 from app.gui.recovery import Kept, Recovery
-from app.session import Session
+from app.loading import load_mesh
+from app.samples import sample
+from app.session import Session, read
+from sample_meshes.ply import write_ply
 from tests.app.gui.conftest import settled
 
 # Longer than any of the tests' waits.
@@ -20,7 +24,7 @@ import sys
 from pathlib import Path
 from msgspec.structs import replace
 from app.gui.recovery import Recovery
-from app.session import Session
+from app.session import Session, read
 recovery = Recovery(Path(sys.argv[1]), print, delay=0.0)
 session = Session(mesh=sys.argv[2])
 print("ready", flush=True)
@@ -95,3 +99,121 @@ def test_the_next_window_offers_it_and_a_click_restores_it(open_window, qtbot, c
     window.close()
     # What the kill left of a file that was being written goes away after a minute.
     assert [one.stem for one in folder.glob("[!.]*.json")] == ["1-half"]
+
+
+def _kept(window, qtbot) -> bool:
+    """Whether a crash now would be followed by an offer."""
+    qtbot.wait(1300)  # longer than changes are gathered
+    return window.rescue.recovery.file.exists()
+
+
+@pytest.fixture
+def folder_of_meshes(tmp_path):
+    """Three meshes, the last of an odd size, so that its unit is asked."""
+    mesh = load_mesh(sample("saddle").path).mesh
+    for name, factor in (("a", 1.0), ("b", 1.0), ("c", 1e-5)):
+        write_ply(tmp_path / f"{name}.ply", factor * mesh.vertices, mesh.faces)
+    return tmp_path
+
+
+def test_what_was_only_opened_is_not_offered(open_window, qtbot, folder_of_meshes) -> None:
+    window = open_window(Session(mesh=str(folder_of_meshes / "a.ply")))
+    qtbot.keyClick(window.canvas, Qt.Key.Key_Right)
+    settled(qtbot, window)
+    assert window.controller.session.mesh.endswith("b.ply")
+    assert not _kept(window, qtbot)
+    qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, window)
+    assert window.controller.session.mesh.endswith("a.ply")
+    assert not _kept(window, qtbot)
+    assert not window.isWindowModified()
+    # A change is worth it, and no more so once it is taken back.
+    window.act(window.actions_["view.curvature"])
+    settled(qtbot, window)
+    assert _kept(window, qtbot)
+    window.act(window.actions_["edit.undo"])
+    settled(qtbot, window)
+    assert not _kept(window, qtbot)
+
+
+def test_a_unit_that_is_remembered_is_no_loss(open_window, qtbot, folder_of_meshes) -> None:
+    window = open_window(Session(mesh=str(folder_of_meshes / "a.ply")))
+    window.controller.open(folder_of_meshes / "c.ply")
+    settled(qtbot, window)
+    qtbot.waitUntil(window.unit_bar.isVisible)
+    window.units.answer(1000.0)
+    settled(qtbot, window)
+    assert window.controller.session.mm_per_unit == 1000.0
+    assert not _kept(window, qtbot)
+    window.controller.open(folder_of_meshes / "a.ply")
+    settled(qtbot, window)
+    window.controller.open(folder_of_meshes / "c.ply")
+    settled(qtbot, window)
+    assert window.controller.session.mm_per_unit == 1000.0
+    assert not _kept(window, qtbot)
+
+
+def test_a_mesh_opened_over_a_session_file_is_not_saved_into_it(
+    open_window, qtbot, folder_of_meshes
+) -> None:
+    window = open_window(Session(mesh=str(folder_of_meshes / "a.ply")))
+    path = folder_of_meshes / "mine.json"
+    window.controller.change("flip", flip=True)
+    assert window.controller.save(path)
+    window.controller.open(folder_of_meshes / "b.ply")
+    settled(qtbot, window)
+    assert window.controller.document.path is None
+    assert "b.ply" in window.windowTitle()
+    assert window.controller.session.flip
+    assert not _kept(window, qtbot)
+
+
+_USED = """
+import sys
+from pathlib import Path
+from qtpy.QtCore import QTimer
+from qtpy.QtWidgets import QApplication
+application = QApplication([])
+from app.gui.window import Window
+from app.session import Session, read
+window = Window(Session(mesh="sample:saddle"))
+window.show()
+window.start()
+step = 0
+def use():
+    global step
+    step += 1
+    window.controller.change(f"exposure {step}", exposure=1.0 + 0.01 * step)
+    if step == 3:
+        window.controller.save(Path(sys.argv[1]) / "saved.json")
+    if window.rescue.recovery.file.exists() and step > 3:
+        print("used", flush=True)
+timer = QTimer()
+timer.timeout.connect(use)
+timer.start(40)
+application.exec()
+"""
+
+
+def test_a_window_that_is_killed_while_it_is_used_is_offered_whole(
+    open_window, qtbot, config, tmp_path
+) -> None:
+    random = np.random.default_rng(11)
+    for _ in range(3):
+        command = [sys.executable, "-c", _USED, str(tmp_path)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE) as child:
+            assert child.stdout.readline() == b"used\n"
+            time.sleep(float(random.uniform(0.0, 1.5)))
+            child.send_signal(signal.SIGKILL)
+        # Whole or not there; what was half written has a name that nobody reads.
+        for file in (*tmp_path.glob("[!.]*.json"), *config.glob("[!.]*.json")):
+            msgspec.json.decode(file.read_bytes())
+        read(tmp_path / "saved.json")
+    window = open_window(Session(mesh="sample:sphere"))
+    window.rescue.offer()
+    assert window.banner.offering
+    assert "sample:saddle" in window.banner.label.text()
+    qtbot.mouseClick(window.banner.button, Qt.MouseButton.LeftButton)
+    settled(qtbot, window)
+    assert window.controller.session.mesh == "sample:saddle"
+    assert window.controller.session.exposure > 1.0

@@ -57,7 +57,7 @@ def fields(seed: int) -> dict:
         "range": chosen((None, (-0.1, 0.25))),
         "camera": chosen((*CAMERAS, _camera(random), _camera(random))),
         "size": (int(random.integers(180, 221)), int(random.integers(150, 171))),
-        "background": chosen(("#20242a", "white", "#446688")),
+        "background": chosen(("#20242a", "white", "#446688", "transparent")),
     }
     for name in ("symmetric", "flip", "fade", "strokes", "flat"):
         found[name] = bool(random.random() < 0.3)

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from qtpy.QtCore import QEvent, Qt
-from qtpy.QtGui import QCloseEvent, QGuiApplication, QImage
-from qtpy.QtWidgets import QDialog, QFileDialog
+from qtpy.QtCore import QEvent, QPoint, Qt, QTimer
+from qtpy.QtGui import QCloseEvent, QColor, QGuiApplication, QImage
+from qtpy.QtWidgets import QApplication, QColorDialog, QDialog, QFileDialog
 
 from app import session as state
 from app.cli.main import main
@@ -21,6 +21,7 @@ from app.picture import render
 from app.pipeline import Pipeline
 from app.provenance import read_pixels
 from app.session import Camera, Method, Session
+from app.transparency import checks
 from tests.app.gui.conftest import pixels, settled
 
 
@@ -154,7 +155,7 @@ def test_the_menu_asks_for_a_size_and_writes_the_picture(
 
 
 def test_the_size_of_the_view_is_one_click_away(small, qtbot) -> None:
-    dialog = PictureDialog(small, (200, 160), (641, 480))
+    dialog = PictureDialog(small, (200, 160), (641, 480), False)
     qtbot.addWidget(dialog)
     assert dialog.chosen == (200, 160)
     qtbot.mouseClick(dialog.twice, Qt.MouseButton.LeftButton)
@@ -171,6 +172,78 @@ def test_the_copied_picture_is_the_session_in_the_size_of_the_view(small, qtbot)
     copied = rows[:, : 3 * size[0]].reshape(size[1], size[0], 3)
     session = replace(small.controller.session, size=size)
     np.testing.assert_array_equal(copied, render(session, Pipeline()).image)
+
+
+def test_a_transparent_picture_is_asked_for_by_hand_and_is_the_command_lines(
+    small, qtbot, named, tmp_path
+) -> None:
+    picture, session, other = named("mine"), tmp_path / "mine.json", tmp_path / "other.png"
+
+    def answer() -> None:
+        dialog = QApplication.activeModalWidget()
+        assert isinstance(dialog, PictureDialog)
+        box = dialog.clear
+        qtbot.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(8, box.height() // 2))
+        qtbot.keyClick(dialog, Qt.Key.Key_Return)
+
+    QTimer.singleShot(200, answer)
+    qtbot.keyClick(small, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, small)
+    picture = picture.with_suffix(".png")
+    assert read_pixels(picture).shape[2] == 4
+    assert small.controller.save(session)
+    assert main(["draw", "--session", str(session), "-o", str(other), "--quiet"]) == 0
+    assert picture.read_bytes() == other.read_bytes()
+    # The view shows checks where nothing is, and undo brings the colour back.
+    before = pixels(small)
+    np.testing.assert_array_equal(np.unique(before[:20, :20]), np.unique(checks(1, 30)))
+    small.activateWindow()  # no window manager gives it the keyboard back
+    qtbot.waitUntil(small.isActiveWindow)
+    qtbot.keyClick(small, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, small)
+    assert pixels(small)[2, 2].tolist() == [0x20, 0x24, 0x2A]
+
+
+def test_the_copied_picture_keeps_its_transparency(small, qtbot) -> None:
+    _act(small, "view.transparent")
+    settled(qtbot, small)
+    _act(small, "file.copy_picture")
+    settled(qtbot, small)
+    image = QGuiApplication.clipboard().image().convertToFormat(QImage.Format.Format_RGBA8888)
+    size = tuple(small.canvas.window_.GetSize())
+    copied = np.frombuffer(image.constBits(), np.uint8).reshape(size[1], size[0], 4)
+    session = replace(small.controller.session, size=size)
+    assert session.background == "transparent"
+    np.testing.assert_array_equal(copied, render(session, Pipeline()).image)
+    _act(small, "view.transparent")
+    assert small.controller.session.background == Session().background
+
+
+def test_a_background_colour_is_chosen_and_comes_back_after_transparency(
+    small, qtbot, monkeypatch
+) -> None:
+    chosen = QColor("#446688")
+    monkeypatch.setattr(QColorDialog, "getColor", lambda *_: chosen)
+    _act(small, "view.background")
+    settled(qtbot, small)
+    assert pixels(small)[2, 2].tolist() == [0x44, 0x66, 0x88]
+    for _ in range(2):
+        _act(small, "view.transparent")
+    assert small.controller.session.background == "#446688"
+    chosen = QColor()  # the dialog was dismissed
+    _act(small, "view.background")
+    assert small.controller.session.background == "#446688"
+
+
+def test_the_next_frame_after_a_picture_is_whole(small, qtbot, tmp_path) -> None:
+    before = pixels(small)
+    small.controller.change("background", background="#446688")
+    _act(small, "file.copy_picture")
+    settled(qtbot, small)
+    after = pixels(small)
+    assert after[2, 2].tolist() == [0x44, 0x66, 0x88]
+    mesh = (before != np.uint8((0x20, 0x24, 0x2A))).any(axis=2)
+    np.testing.assert_array_equal(after[mesh][:1000], before[mesh][:1000])
 
 
 def test_a_screenshot_is_what_the_view_shows(small, named) -> None:
