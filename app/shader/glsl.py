@@ -15,8 +15,7 @@ TABLE = "glowTable"
 _PLACE = "glowPlace"
 
 _TRANSMITTANCE = """
-float glowEntering(float c) {
-  float n = glowEta[0];
+float glowEntering(float c, float n) {
   float inside = sqrt(max(1.0 - (1.0 - c * c) / (n * n), 0.0));
   float crossing = (c - n * inside) / (c + n * inside + 1e-20);
   float parallel = (n * c - inside) / (n * c + inside + 1e-20);
@@ -31,13 +30,13 @@ float glowOf(float cosine, vec3 bending, int c) {
   float b = glowLength[c] * length(bending);
   float even = 0.0, lit = 0.0;
   for (int j = 0; j < {hinges}; ++j) {
-    float a = cosine - glowCorners[j];
+    float a = cosine - glowCorners[{hinges} * c + j];
     float at = {last}.0 * b / (b + {half} * abs(a) + 1e-20);
     int segment = int(at);
     float psi = texelFetch(glowTable, ivec2(segment, c), 0).r;
     float next = texelFetch(glowTable, ivec2(min(segment + 1, {last}), c), 0).r;
-    lit += glowWeights[j] * max(a, 0.0);
-    even += glowWeights[j] * (mix(psi, next, at - float(segment)));
+    lit += glowWeights[{hinges} * c + j] * max(a, 0.0);
+    even += glowWeights[{hinges} * c + j] * (mix(psi, next, at - float(segment)));
   }
   return lit + b * even;
 }
@@ -72,7 +71,8 @@ _SEEN = """
 vec3 glowView = glowEye[3] > 0.0
   ? normalize(vec3(glowEye[0], glowEye[1], glowEye[2]) - {place})
   : vec3(glowEye[0], glowEye[1], glowEye[2]);
-float glowExit = glowEntering(abs(dot({leaving}, glowView)));
+float glowSlant = abs(dot({leaving}, glowView));
+vec3 glowExit = vec3({entering});
 glowShone = clamp(glowExposure * glowExit * glowShone{albedo}, 0.0, 1.0);
 vec3 glowPower = 1.055 * pow(glowShone, vec3(1.0 / 2.4)) - 0.055;
 gl_FragData[0] = vec4(mix(12.92 * glowShone, glowPower, step(0.0031308, glowShone)), 1.0);
@@ -150,7 +150,10 @@ def color(look: PixelLook) -> str:
             for c in range(3)
         )
     light = _LIGHT.format(fields=LIGHT_FIELDS, place=_PLACE, sum=_sum(look))
-    seen = _SEEN.format(place=_PLACE, leaving=leaving, albedo=albedo)
+    # The constructor of a vector takes one number for all three.
+    indices = range(3 if len(set(look.numbers["glowEta"])) > 1 else 1)
+    entering = ", ".join(f"glowEntering(glowSlant, glowEta[{c}])" for c in indices)
+    seen = _SEEN.format(place=_PLACE, leaving=leaving, albedo=albedo, entering=entering)
     return before + light + total + seen
 
 
@@ -173,7 +176,7 @@ def _sum(look: PixelLook) -> str:
         if look.table is None:
             factor = f"max({cosine}, 0.0)"
             if look.directional:
-                factor += f" * glowEntering(max({cosine}, 0.0))"
+                factor += f" * glowEntering(max({cosine}, 0.0), glowEta[{c}])"
         else:
             factor = f"glowOf({cosine}, {_called('glowBending', look, c, 'w')}, {c})"
         lines.append(f"  if (color[{c}] > 0.0) glowShone[{c}] += color[{c}] * {factor};\n")

@@ -95,7 +95,7 @@ class PixelLook:
     @property
     def hinges(self) -> int:
         """Look-ups for each light and channel."""
-        return len(self.numbers.get("glowCorners", ()))
+        return len(self.numbers.get("glowCorners", ())) // 3
 
 
 def unsupported(session: Session, subject: Subject) -> str:
@@ -173,7 +173,7 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
         getattr(model, "fresnel", "") == "directional",
         seen is not None,
         attributes,
-        {"glowEta": (table.eta,)} | _numbers(model, table),
+        {"glowEta": tuple(table.eta)} | _numbers(model, table),
         _table(table) if bent else None,
     )
 
@@ -193,12 +193,12 @@ def _table(table: "PsiTable") -> SingleArray:
 
 
 def _numbers(model: "ShadingModel", table: "PsiTable") -> dict[str, tuple[float, ...]]:
-    from lutcore.fresnel import hinges, mean_transmittance
+    from lutcore.fresnel import hinges_of
     from plugins.shading.curvature_lut import CurvatureLut
     from plugins.shading.lambert import Lambert
 
     if isinstance(model, CurvatureLut):
-        fit = hinges(table.eta, model.hinges)
+        corners, weights = hinges_of(table.eta, model.hinges)
         # E2 of the model per (2 (k1^2 + k2^2) + (k1 + k2)^2), mm^2.
         area = table.mean_square * table.mean_free_path**2 / 16.0
         return {
@@ -206,11 +206,11 @@ def _numbers(model: "ShadingModel", table: "PsiTable") -> dict[str, tuple[float,
             "glowArea": tuple(area if model.area == "curved" else np.zeros(3)),
             "glowLength": tuple(table.mean_free_path),
             "glowSteps": tuple(table.inverse_step),
-            "glowCorners": tuple(fit.corners),
-            "glowWeights": tuple(fit.weights),
+            "glowCorners": tuple(corners.ravel()),
+            "glowWeights": tuple(weights.ravel()),
         }
     assert isinstance(model, Lambert)
-    entering = 1.0 if model.fresnel == "directional" else mean_transmittance(table.eta)
+    entering = 1.0 if model.fresnel == "directional" else table.entering
     return {"glowTotal": tuple(table.total * entering)}
 
 

@@ -8,7 +8,7 @@ from numba import prange
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
-from lutcore.fresnel import hinges
+from lutcore.fresnel import hinges_of
 from lutcore.lights import is_directional, light_at
 from lutcore.lut import BLOCK, PsiTable, even_forms
 from lutcore.parameters import choice, param
@@ -53,15 +53,15 @@ class CurvatureLut(ShadingModel):
 
     def _channels(self, inputs: ShadingInputs, start: int, stop: int) -> FloatArray:
         table = inputs.table
-        fit = hinges(table.eta, self.hinges)
+        fit = hinges_of(table.eta, self.hinges)
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
         constants = _constants(table, self.area)
-        return _exitance(*arguments, fit.corners, fit.weights, *constants, start, stop)
+        return _exitance(*arguments, *fit, *constants, start, stop)
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
-        fit = hinges(scene.table.eta, self.hinges)
-        flat = np.maximum(0.0, COSINES[:, None] - fit.corners) @ fit.weights
+        fits = zip(*hinges_of(scene.table.eta, self.hinges), strict=True)
+        flat = np.stack([np.maximum(0.0, COSINES[:, None] - c) @ w for c, w in fits])
         return scene.error_of(Knowledge(flat, second=float(self.area == "flat")))
 
     @classmethod
@@ -114,7 +114,7 @@ def _exitance(
             for c in range(start, stop):
                 if lights[light, 8 + c] == 0.0:
                     continue
-                glow = even_forms(weights, corners, cosine, kappa, length[c], rows, steps, c)
+                glow = even_forms(weights[c], corners[c], cosine, kappa, length[c], rows, steps, c)
                 for k in range(count):
                     out[first + k, c - start] += lights[light, 8 + c] * strength[k] * glow[k]
         for i in range(first, first + count):

@@ -8,7 +8,6 @@ from numba import prange
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
 from lutcore.convexity import invariants
-from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
 from lutcore.prediction import Knowledge, Scene
@@ -36,7 +35,7 @@ class Kolchin2007Simplified(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.table
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
-        total = table.total * mean_transmittance(table.eta)
+        total = table.total * table.entering
         return _exitance(*arguments, total, table.mean_free_path, table.rows, table.inverse_step)
 
     def predicted_error(self, scene: Scene) -> FloatArray:

@@ -10,7 +10,7 @@ from app.offscreen import offscreen_window
 from app.picture import compose
 from app.pipeline import Pipeline
 from app.render import fill, grab
-from app.session import Camera, Cone, Directional, Method, Point, Session
+from app.session import Camera, Cone, Directional, Method, Point, Session, Substance
 from app.shader.drawing import PixelLight
 from app.shader.look import HALF, MOST_LIGHTS, look_of, unsupported
 from lutcore.baking import bake
@@ -21,6 +21,7 @@ LIGHTS = (
     Cone((4.0, -4.0, 5.0), (-0.5, 0.5, -0.6), (5.0, 9.0, 5.0), 80.0),
 )
 PARALLEL = Camera((1.0, -2.0, 12.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), height=9.0)
+PRISM = Substance("prism", (0.74, 0.88, 1.01), (0.032, 0.17, 0.48), (1.1, 1.3, 1.7))
 CASES = {
     "detail by channel": {},
     "one scale": {"scale": 0.3, "lights": LIGHTS},
@@ -28,6 +29,13 @@ CASES = {
     "flat area": {"scale": 0.3, "model": Method("curvature-lut", {"hinges": 7.0, "area": "flat"})},
     "eight lights": {"scale": 0.3, "lights": (*LIGHTS, *LIGHTS, *LIGHTS[:2])},
     "no light": {"scale": 0.3, "lights": (), "exposure": 1.0},
+    "an index for each channel": {"scale": 0.3, "material": PRISM, "lights": LIGHTS},
+    "an index for each channel, lambert": {
+        "model": Method("lambert", {"fresnel": "directional"}),
+        "scale": 0.3,
+        "material": PRISM,
+        "lights": LIGHTS[:1],
+    },
     "lambert": {"model": Method("lambert"), "lights": LIGHTS[:1]},
     "lambert, directional": {
         "model": Method("lambert", {"fresnel": "directional"}),
