@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from app import session as state
+from app.animation_motion import SUFFIXES
 from app.session import Session
 
 
@@ -12,7 +13,7 @@ def started(path: Path | None) -> Session:
     Parameters
     ----------
     path : Path or None
-        A session file, or a picture that Curvelight wrote.
+        A session file, or a picture or animation that Curvelight wrote.
 
     Returns
     -------
@@ -30,4 +31,8 @@ def started(path: Path | None) -> Session:
         from app.provenance import read_record
 
         return read_record(path).record.session
+    if path.suffix.lower() in SUFFIXES:
+        from app.animation_files import read_film
+
+        return read_film(path).record.session
     return state.read(path)
