@@ -16,7 +16,7 @@ from app import camera as cameras
 from app.animation_framing import framed
 from app.animation_motion import Motion
 from app.comparison import CIEDE2000
-from app.picture import compose, render
+from app.picture import Picture, compose, render
 from app.pipeline import Pipeline
 from app.render import Image
 from app.session import Camera, Cone, Directional, Point, Session, Vector
@@ -36,6 +36,8 @@ class Scene:
 
     Parameters
     ----------
+    asked : Session
+        The picture that moves, as it was asked for.
     session : Session
         The first frame: it says its camera and its exposure, and the range of differences.
     motion : Motion
@@ -46,6 +48,7 @@ class Scene:
         Up, of unit length.
     """
 
+    asked: Session
     session: Session
     motion: Motion
     centre: FloatArray
@@ -136,7 +139,7 @@ def stage(session: Session, pipeline: Pipeline, motion: Motion) -> Scene:
     )
     if measured and not motion.turns_object:
         raise ParameterError("curvature is drawn without lights; use --turntable")
-    first = compose(session, pipeline)
+    asked, first = session, compose(session, pipeline)
     if not measured:
         session = _decided(session, pipeline, first.camera)
     camera = first.camera
@@ -144,7 +147,7 @@ def stage(session: Session, pipeline: Pipeline, motion: Motion) -> Scene:
     axis = np.asarray(camera.up) / np.linalg.norm(camera.up)
     if motion.turns_object and not isinstance(session.camera, Camera):
         camera = framed(first, pipeline, centre, axis)
-    scene = Scene(replace(session, camera=camera), motion, centre, axis)
+    scene = Scene(asked, replace(session, camera=camera), motion, centre, axis)
     if measured:
         return scene
     probes = [
@@ -156,10 +159,10 @@ def stage(session: Session, pipeline: Pipeline, motion: Motion) -> Scene:
     if ranges:
         lows, highs = zip(*ranges, strict=True)
         fixed = replace(fixed, range=(min(lows), max(highs)))
-    return Scene(fixed, motion, centre, axis)
+    return Scene(asked, fixed, motion, centre, axis)
 
 
-def frames(scene: Scene, pipeline: Pipeline, every: int = 1) -> Iterator[Image]:
+def frames(scene: Scene, pipeline: Pipeline, every: int = 1) -> Iterator[Picture]:
     """Draw the frames of an animation, one after another.
 
     Parameters
@@ -173,14 +176,14 @@ def frames(scene: Scene, pipeline: Pipeline, every: int = 1) -> Iterator[Image]:
 
     Yields
     ------
-    ndarray of uint8, shape=(height, width, 3)
-        Pictures.
+    Picture
+        One after another.
     """
     told, count = pipeline.progress, scene.motion.count
     try:
         for index in range(0, count, every):
             pipeline.progress = part(told, index / count, (index + every) / count)
-            yield render(scene.frame(index), pipeline).image
+            yield render(scene.frame(index), pipeline)
     finally:
         pipeline.progress = told
 
@@ -195,10 +198,11 @@ def palette_frames(scene: Scene, pipeline: Pipeline) -> Iterator[Image]:
 
     Returns
     -------
-    iterator of ndarray
-        See `frames`.
+    iterator of ndarray of uint8, shape=(height, width, 3)
+        Their pixels.
     """
-    return frames(scene, pipeline, max(1, scene.motion.count // _PROBES))
+    few = frames(scene, pipeline, max(1, scene.motion.count // _PROBES))
+    return (picture.image for picture in few)
 
 
 def _decided(session: Session, pipeline: Pipeline, camera: Camera) -> Session:

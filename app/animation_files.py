@@ -1,35 +1,25 @@
-"""Animations as GIF and MP4, written whole or not at all."""
+"""Animations as GIF and MP4 that carry how they were made, written whole or not at all."""
 
-from collections.abc import Iterable, Iterator
-from itertools import chain
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from app import gif, mp4
 from app.animation import Scene, frames, palette_frames
-from app.animation_motion import GIF, Motion
+from app.animation_motion import GIF, MP4
+from app.film import Film, Tally, film_of
+from app.picture import Picture
 from app.pipeline import Pipeline
+from app.provenance import Stored, said, understood
 from app.render import Image
 from app.writing import WriteError, replacing
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Pillow
 
-_COLORS = 256
-_REFINEMENTS = 3
-_PALETTE_PIXELS = 1_000_000
-# Constant rate factor of x264; 18 and below is taken as visually lossless.
-_QUALITY = "18"
-# The colours of HDTV, and said so: players guess otherwise, and differently.
-_COLOR_SPACE = (
-    "scale=out_color_matrix=bt709:out_range=tv,"
-    "setparams=colorspace=bt709:color_primaries=bt709:color_trc=iec61966-2-1:range=tv"
-)
 
-
-def write_animation(path: Path, scene: Scene, pipeline: Pipeline) -> None:
-    """Draw an animation and write it; a GIF repeats for ever.
+def write_animation(path: Path, scene: Scene, pipeline: Pipeline) -> Film:
+    """Draw an animation and write it with its record; a GIF repeats for ever.
 
     Parameters
     ----------
@@ -40,87 +30,80 @@ def write_animation(path: Path, scene: Scene, pipeline: Pipeline) -> None:
     pipeline : Pipeline
         Where arrays come from.
 
+    Returns
+    -------
+    Film
+        How it was made.
+
     Raises
     ------
     WriteError
         If it cannot be written; an older file of that name is then untouched.
     """
+    drawn, tally = _Drawn(frames(scene, pipeline)), Tally()
     with replacing(path) as beside:
         if path.suffix.lower() == GIF:
-            colors = _palette(palette_frames(scene, pipeline))
-            _write_gif(beside, frames(scene, pipeline), colors, scene.motion)
-        else:
-            try:
-                found = _write_mp4(beside, frames(scene, pipeline), scene)
-            except RuntimeError as error:  # imageio-ffmpeg has no encoder for this system
-                raise WriteError(f"{path}: {error}; write .gif") from None
-            if found != scene.motion.count:
+            colors = gif.palette(palette_frames(scene, pipeline))
+            gif.write(beside, _counted(gif.indexed(drawn.images(), colors), tally), scene.motion)
+            film = film_of(scene, pipeline, drawn.first, tally)
+            gif.write_comment(beside, said(film, path.resolve().parent))
+            return film
+        try:
+            found = mp4.write(beside, tally.of(drawn.images()), scene.session.size, scene.motion)
+        except RuntimeError as error:  # imageio-ffmpeg has no encoder for this system
+            raise WriteError(f"{path}: {error}; write .gif") from None
+        if found != scene.motion.count:
+            raise WriteError(
+                f"{path}: the encoder wrote {found} of {scene.motion.count} frames; free some "
+                "space on the disk, or write .gif"
+            )
+        film = film_of(scene, pipeline, drawn.first, tally)
+        with replacing(beside) as told:
+            if not mp4.write_comment(beside, told, said(film, path.resolve().parent)):
                 raise WriteError(
-                    f"{path}: the encoder wrote {found} of {scene.motion.count} frames; free some "
-                    "space on the disk, or write .gif"
+                    f"{path}: the encoder could not add how it was made; free some space on the "
+                    "disk, or write .gif"
                 )
+        return film
 
 
-def _palette(images: Iterable[Image]) -> "Pillow":
-    """Return a picture whose palette serves all frames, so that colours do not flicker."""
-    from PIL import Image as Pillow
+def read_film(path: Path) -> Stored[Film]:
+    """Read how an animation was made.
 
-    drawn = list(images)
-    step = -(-sum(image.size // 3 for image in drawn) // _PALETTE_PIXELS)
-    pixels = np.concatenate([image.reshape(-1, 3) for image in drawn])[::step]
-    # On the scanned face the colours are .3 CIEDE2000 off on average, 2.7 at the 99th percentile.
-    return Pillow.fromarray(pixels[None]).quantize(
-        _COLORS, method=Pillow.Quantize.MEDIANCUT, kmeans=_REFINEMENTS
-    )
+    Parameters
+    ----------
+    path : Path
+        A GIF or MP4 file that `write_animation` wrote.
 
+    Returns
+    -------
+    Stored
+        The record.
 
-def _write_gif(path: Path, images: Iterator[Image], colors: "Pillow", motion: Motion) -> None:
-    from PIL import Image as Pillow
-
-    # Dithering by errors would crawl from frame to frame.
-    shown = (
-        Pillow.fromarray(image).quantize(palette=colors, dither=Pillow.Dither.NONE)
-        for image in images
-    )
-    first = next(shown)
-    palette = bytes(first.getpalette() or [])
-    first.save(
-        path,
-        format="GIF",
-        save_all=True,
-        append_images=chain(shown),
-        duration=round(1000.0 / motion.fps),
-        loop=0,
-        palette=palette,
-        optimize=False,
-    )
+    Raises
+    ------
+    PictureError
+        If the file cannot be read, has no record or one that is not understood.
+    """
+    container = mp4 if path.suffix.lower() == MP4 else gif
+    return understood(container.read_comment(path), path, Film)
 
 
-def _write_mp4(path: Path, images: Iterator[Image], scene: Scene) -> int:
-    """Write a film and return how many frames can be read back from it."""
-    import imageio_ffmpeg
+def _counted(images: "Iterator[Pillow]", tally: Tally) -> "Iterator[Pillow]":
+    for image in images:
+        tally.add(gif.pixels(image))
+        yield image
 
-    encoder = imageio_ffmpeg.write_frames(
-        path,
-        scene.session.size,
-        fps=scene.motion.fps,
-        codec="libx264",
-        quality=None,
-        macro_block_size=2,
-        ffmpeg_log_level="fatal",
-        output_params=["-crf", _QUALITY, "-vf", _COLOR_SPACE, "-movflags", "+faststart"],
-    )
-    try:
-        encoder.send(None)
-        for image in images:
-            encoder.send(image)
-    except OSError:
-        return 0  # the encoder is gone
-    finally:
-        encoder.close()
-    # It does not say how it ended: a full disk shows in what can be read back.
-    try:
-        found, _ = imageio_ffmpeg.count_frames_and_secs(path)
-    except RuntimeError:
-        return 0
-    return int(found)
+
+class _Drawn:
+    """Frames as they are drawn, the first one kept."""
+
+    def __init__(self, pictures: Iterator[Picture]) -> None:
+        self._pictures = pictures
+        self.first: Picture
+
+    def images(self) -> Iterator[Image]:
+        for index, picture in enumerate(self._pictures):
+            if index == 0:
+                self.first = picture
+            yield picture.image

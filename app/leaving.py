@@ -44,7 +44,7 @@ def leaving(
     key = ("leaving", subject.key, id(normals), eta, camera, session.albedo, textured)
 
     def compute() -> tuple[FloatArray, FloatArray]:
-        factor = exit_transmittance(subject.mesh, normals, camera, eta)[:, None]
+        factor = exit_transmittance(subject.mesh, normals, camera, eta)
         if session.albedo and (color := albedo(subject, textured)) is not None:
             factor = factor * color
         return factor, normals  # held, so that no other array gets its id
@@ -78,7 +78,7 @@ def albedo(subject: Subject, textured: bool = True) -> FloatArray | None:
 
 
 def exit_transmittance(
-    mesh: TriangleMesh, normals: FloatArray, camera: Camera, eta: float
+    mesh: TriangleMesh, normals: FloatArray, camera: Camera, eta: tuple[float, float, float]
 ) -> FloatArray:
     """Return the Fresnel factor of light that leaves each vertex for the camera.
 
@@ -90,13 +90,13 @@ def exit_transmittance(
         Unit normals.
     camera : Camera
         Where it is seen from.
-    eta : float
-        Refractive index.
+    eta : tuple of 3 floats
+        Refractive index by channel.
 
     Returns
     -------
-    ndarray, shape=(n,)
-        0 to 1.
+    ndarray, shape=(n, 1) or (n, 3)
+        0 to 1; one column where the channels have one index.
     """
     if camera.height is None:
         towards = np.asarray(camera.position) - mesh.vertices
@@ -107,7 +107,8 @@ def exit_transmittance(
     # A surface seen from behind, through a hole, is shown as its front would be.
     from lutcore.fresnel import transmittance
 
-    return transmittance(np.abs(cosine), eta)
+    indices = eta if len(set(eta)) > 1 else eta[:1]
+    return np.stack([transmittance(np.abs(cosine), index) for index in indices], axis=1)
 
 
 def view_of(session: Session, pipeline: Pipeline, aspect: float) -> Camera:

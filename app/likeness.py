@@ -52,6 +52,8 @@ class Likeness:
         Width and height of the expected and of the other picture.
     difference : ndarray, shape=(height, width), or None
         CIEDE2000 of each pixel; None where the sizes differ.
+    least_ssim : float
+        Least SSIM that was allowed, where a threshold is given.
     """
 
     alike: bool
@@ -63,6 +65,7 @@ class Likeness:
     ssim: float
     sizes: tuple[tuple[int, int], tuple[int, int]]
     difference: FloatArray | None
+    least_ssim: float = LEAST_SSIM
 
     @property
     def sentence(self) -> str:
@@ -75,7 +78,7 @@ class Likeness:
         asked = (
             "not a bit may differ"
             if self.threshold is None
-            else f"at most {self.threshold:g} and at least {LEAST_SSIM} may be"
+            else f"at most {self.threshold:g} and at least {self.least_ssim} may be"
         )
         return (
             f"{self.pixels:,} of {self.total:,} pixels differ; CIEDE2000 up to {self.local:.3g} "
@@ -98,11 +101,13 @@ class Likeness:
             "ciede2000_local": self.local,
             "ciede2000_largest": self.largest,
             "ssim": self.ssim,
-            "least_ssim": None if self.threshold is None else LEAST_SSIM,
+            "least_ssim": None if self.threshold is None else self.least_ssim,
         }
 
 
-def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness:
+def likeness(
+    expected: Image, other: Image, threshold: float | None, least_ssim: float = LEAST_SSIM
+) -> Likeness:
     """Compare two pictures.
 
     Parameters
@@ -110,8 +115,10 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
     expected, other : ndarray of uint8, shape=(height, width, 3 or 4)
         sRGB.
     threshold : float or None
-        Largest CIEDE2000, averaged over 11 x 11 pixels, of pictures that are alike; their SSIM
-        must then be .98 at least. None asks for the same bits.
+        Largest CIEDE2000, averaged over 11 x 11 pixels, of pictures that are alike. None asks for
+        the same bits.
+    least_ssim : float
+        What their SSIM must be at least, where a threshold is given.
 
     Returns
     -------
@@ -139,10 +146,19 @@ def likeness(expected: Image, other: Image, threshold: float | None) -> Likeness
         difference[differing] = np.maximum(difference[differing], found)
         ssim = min(ssim, float(structural_similarity(one, two, channel_axis=2)))
     local = float(uniform_filter(difference, WINDOW).max())
-    alike = threshold is not None and local <= threshold and ssim >= LEAST_SSIM
+    alike = threshold is not None and local <= threshold and ssim >= least_ssim
     largest = float(difference.max())
     return Likeness(
-        alike, threshold, pixels, height * width, local, largest, ssim, sizes, difference
+        alike,
+        threshold,
+        pixels,
+        height * width,
+        local,
+        largest,
+        ssim,
+        sizes,
+        difference,
+        least_ssim,
     )
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import msgspec
 import numpy as np
@@ -21,10 +21,12 @@ from app.render import Image
 from app.session import Session, SessionError
 from app.transparency import without_need
 from app.writing import replacing
+from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
-    from PIL.PngImagePlugin import PngImageFile
+    from PIL.ImageFile import ImageFile
 
+R = TypeVar("R", bound=Record)
 KEYWORD = "curvelight"
 _DIGEST = "digest"
 _LARGEST = 16384
@@ -35,7 +37,7 @@ class PictureError(SessionError):
 
 
 @dataclass(frozen=True)
-class Stored:
+class Stored(Generic[R]):
     """What a picture says of itself.
 
     Parameters
@@ -46,7 +48,7 @@ class Stored:
         Whether the record is not the one that was written.
     """
 
-    record: Record
+    record: R
     edited: bool
 
 
@@ -70,17 +72,34 @@ def write_picture(path: Path, image: Image, record: Record) -> None:
     from PIL import Image as Pillow
     from PIL.PngImagePlugin import PngInfo
 
-    session = replace(record.session, mesh=portable(record.session.mesh, path.resolve().parent))
-    fields: dict[str, Any] = msgspec.to_builtins(replace(record, session=session))
     info = PngInfo()
-    text = msgspec.json.encode(fields | {_DIGEST: _digest(fields)}).decode()
-    info.add_itxt(KEYWORD, text)
+    info.add_itxt(KEYWORD, said(record, path.resolve().parent))
     with replacing(path) as beside:
         # Level 1 writes five times faster than the default for a tenth more bytes.
         Pillow.fromarray(image).save(beside, format="PNG", compress_level=1, pnginfo=info)
 
 
-def read_record(path: Path) -> Stored:
+def said(record: Record, folder: Path) -> str:
+    """Return a record as text, with its digest.
+
+    Parameters
+    ----------
+    record : Record
+        How a picture was made.
+    folder : Path
+        Where it will lie: the mesh's path begins there.
+
+    Returns
+    -------
+    str
+        JSON.
+    """
+    session = replace(record.session, mesh=portable(record.session.mesh, folder))
+    fields: dict[str, Any] = msgspec.to_builtins(replace(record, session=session))
+    return msgspec.json.encode(fields | {_DIGEST: _digest(fields)}).decode()
+
+
+def read_record(path: Path) -> Stored[Record]:
     """Read how a picture was made.
 
     Parameters
@@ -98,8 +117,33 @@ def read_record(path: Path) -> Stored:
     PictureError
         If the file cannot be read, has no record or one that is not understood.
     """
-    with _opened(path) as picture:
-        text = str(picture.text.get(KEYWORD, ""))
+    with opened(path, "PNG") as picture:
+        text = str(picture.text.get(KEYWORD, ""))  # type: ignore[attr-defined]  # a PNG has it
+    return understood(text, path, Record)
+
+
+def understood(text: str, path: Path, kind: type[R]) -> Stored[R]:
+    """Return the record that text says.
+
+    Parameters
+    ----------
+    text : str
+        As `said` makes it; empty where a file has none.
+    path : Path
+        The file.
+    kind : type
+        Of record.
+
+    Returns
+    -------
+    Stored
+        The record.
+
+    Raises
+    ------
+    PictureError
+        If there is none, or one that is not understood.
+    """
     if not text:
         raise PictureError(
             f"{path}: does not say how it was made: another program wrote it, or removed its "
@@ -114,8 +158,8 @@ def read_record(path: Path) -> Stored:
         ) from None
     edited = stated != _digest(fields)
     try:
-        record = msgspec.convert(fields, Record)
-    except (msgspec.MsgspecError, ValueError) as error:
+        record = msgspec.convert(fields, kind)
+    except (msgspec.MsgspecError, ValueError, ParameterError) as error:
         raise PictureError(f"{path}: {_misunderstood(fields, edited)} ({error})") from None
     return Stored(replace(record, session=_placed(record.session, path)), edited)
 
@@ -138,23 +182,42 @@ def read_pixels(path: Path) -> Image:
     PictureError
         If it cannot be read.
     """
-    with _opened(path) as picture:
+    with opened(path, "PNG") as picture:
         clear = "transparency" in picture.info or "A" in picture.getbands()
         return without_need(np.asarray(picture.convert("RGBA" if clear else "RGB")))
 
 
 @contextmanager
-def _opened(path: Path) -> "Iterator[PngImageFile]":
+def opened(path: Path, kind: str) -> "Iterator[ImageFile]":
+    """Open a picture and say what is wrong with it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : str
+        Its format, by Pillow's name.
+
+    Yields
+    ------
+    PIL.ImageFile.ImageFile
+        The picture.
+
+    Raises
+    ------
+    PictureError
+        If it cannot be read.
+    """
     from PIL import Image as Pillow
     from PIL import UnidentifiedImageError
-    from PIL.PngImagePlugin import PngImageFile
+    from PIL.ImageFile import ImageFile
 
     # The largest picture of a session is no attack.
     Pillow.MAX_IMAGE_PIXELS = max(Pillow.MAX_IMAGE_PIXELS or 0, _LARGEST**2)
     try:
-        with Pillow.open(path, formats=["PNG"]) as picture:
+        with Pillow.open(path, formats=[kind]) as picture:
             picture.load()
-            assert isinstance(picture, PngImageFile)
+            assert isinstance(picture, ImageFile)
             yield picture
     except FileNotFoundError:
         problem = "there is no such file; check its name and folder"
@@ -163,7 +226,7 @@ def _opened(path: Path) -> "Iterator[PngImageFile]":
     except PermissionError:
         problem = "it may not be read; ask for permission to read it"
     except UnidentifiedImageError:
-        problem = "it is no PNG picture; name one that Curvelight wrote"
+        problem = f"it is no {kind} picture; name one that Curvelight wrote"
     except (OSError, SyntaxError, ValueError, Pillow.DecompressionBombError) as error:
         problem = f"it is damaged ({error}); copy or make it again"
     else:

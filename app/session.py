@@ -20,6 +20,7 @@ Vector = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
 Percent = Annotated[float, Meta(ge=0.0, le=100.0)]
+_INDEX = (1.0, 3.0)
 Pixels = Annotated[int, Meta(ge=16, le=16384)]
 Frame = Literal["camera", "world"]
 RepairKind = Literal["merge", "islands", "manifold", "holes", "orient", "decimate"]
@@ -68,12 +69,26 @@ class Cone(_Part, frozen=True, tag="cone", tag_field="kind"):
 
 
 class Substance(_Part, frozen=True):
-    """A material by its coefficients, for one that has no name; see `lutcore.Material`."""
+    """A material by its coefficients, for one that has no name; see `lutcore.Material`.
+
+    `eta` is one number, or one for each channel: three that are equal become one, so that there is
+    one way to say it.
+    """
 
     name: str
     scattering: tuple[Positive, Positive, Positive]
     absorption: tuple[NotNegative, NotNegative, NotNegative]
-    eta: Annotated[float, Meta(ge=1.0, le=3.0)]
+    eta: float | Vector
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        indices = self.eta if isinstance(self.eta, tuple) else (self.eta,)
+        # Not declared as the others: msgspec 0.22 reads the bounds of such a union from stray
+        # memory.
+        if not all(_INDEX[0] <= index <= _INDEX[1] for index in indices):
+            raise ValueError(f"eta = {self.eta!r} is outside its range {_INDEX[0]} to {_INDEX[1]}")
+        if len(set(indices)) == 1:
+            msgspec.structs.force_setattr(self, "eta", indices[0])
 
 
 class Method(_Part, frozen=True):

@@ -20,15 +20,23 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkTexture
 
 from app import wipe_shader
 from app.loading.texture import Texture
+from app.loading.texture_wrap import CLAMP, MIRROR, REPEAT
 
 _LIGHT, _BEYOND = "light", "lightBeyond"
 # IEC 61966-2-1, as in lutcore.color; the sampler has decoded the texture.
 _MULTIPLY = """
-vec3 albedo = texture(actortexture, tcoordVCVSOutput.st).rgb;
+vec3 albedo = {albedo};
 vec3 shone = clamp({light} * albedo, 0.0, 1.0);
 vec3 power = 1.055 * pow(shone, vec3(1.0 / 2.4)) - 0.055;
 gl_FragData[0] = vec4(mix(12.92 * shone, power, step(0.0031308, shone)), 1.0);
 """
+_PLACE = "tcoordVCVSOutput"
+# Half a pixel inside, where nothing of the other edge is mixed in.
+_BEYOND_EDGE = {
+    REPEAT: "{place}",
+    CLAMP: "clamp({place}, {half}, 1.0 - {half})",
+    MIRROR: "clamp(1.0 - abs(mod({place}, 2.0) - 1.0), {half}, 1.0 - {half})",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +92,7 @@ def coated(coat: Coat, shape: vtkPolyData, beyond: Coat | None = None) -> vtkAct
     if beyond is not None:
         light = wipe_shader.either(actor, light, _passed(actor, _BEYOND, "Clip"))
     # In place of VTK's own multiplication.
-    code = _MULTIPLY.format(light=light)
+    code = _MULTIPLY.format(light=light, albedo=_albedo(coat.texture))
     actor.GetShaderProperty().AddFragmentShaderReplacement("//VTK::TCoord::Impl", True, code, False)
     return actor
 
@@ -108,6 +116,20 @@ def relight(actor: vtkActor, coat: Coat, beyond: Coat | None = None) -> None:
             light.SetName(name)
             data.GetPointData().AddArray(light)
     data.Modified()
+
+
+def _albedo(texture: Texture) -> str:
+    """Return the picture's colour in GLSL; the sampler itself can only repeat."""
+    if texture.wrap == (REPEAT, REPEAT):
+        return f"texture(actortexture, {_PLACE}.st).rgb"
+    height, width = texture.image.shape[:2]
+    inside = ", ".join(
+        _BEYOND_EDGE[wrap].format(place=f"{_PLACE}.{axis}", half=f"{0.5 / size:.9f}")
+        for wrap, axis, size in zip(texture.wrap, "st", (width, height), strict=True)
+    )
+    # The picture is seen as small as before it was folded.
+    size = f"dFdx({_PLACE}.st), dFdy({_PLACE}.st)"
+    return f"textureGrad(actortexture, vec2({inside}), {size}).rgb"
 
 
 def _passed(actor: vtkActor, name: str, tag: str) -> str:
@@ -141,5 +163,6 @@ def _picture(texture: Texture) -> vtkTexture:
     made.UseSRGBColorSpaceOn()
     made.InterpolateOn()
     made.MipmapOn()
-    made.RepeatOn()
+    # One for both axes: where they differ, the shader folds one of them.
+    made.SetWrap(vtkTexture.Repeat if REPEAT in texture.wrap else vtkTexture.ClampToEdge)
     return made

@@ -1,12 +1,14 @@
 """Whether a picture is what its own record makes, and if not, why."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from msgspec.structs import replace
 
 from app.likeness import THRESHOLD, Likeness, likeness
-from app.picture import Picture, render
+from app.picture import render
 from app.pipeline import Pipeline
 from app.provenance import PictureError, read_pixels, read_record
 from app.record import Record, elsewhere, pixels_digest, record_of
@@ -53,9 +55,19 @@ class Verdict:
 
         Of another mesh only the same bits will do: what is within limits may be what was changed.
         """
-        if self.mesh_changed and self.likeness.pixels:
+        if self.mesh_changed and not self.untouched:
             return False
-        return self.likeness.alike and not self.edited and not self.repainted
+        return self.alike and not self.edited and not self.repainted
+
+    @property
+    def alike(self) -> bool:
+        """Whether it is as like the redrawn one as it must be."""
+        return self.likeness.alike
+
+    @property
+    def untouched(self) -> bool:
+        """Whether not a bit differs."""
+        return not self.likeness.pixels
 
     @property
     def mesh_changed(self) -> bool:
@@ -77,7 +89,7 @@ class Verdict:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What was found, in words: the verdict, then its reasons."""
-        found = [f"{self._heading}: {self.likeness.sentence}"]
+        found = [f"{self._heading}: {self._measure}"]
         if self.edited:
             found.append(
                 "its metadata were edited after it was written: they do not fit their own digest, "
@@ -113,14 +125,18 @@ class Verdict:
         return tuple(found)
 
     @property
+    def _measure(self) -> str:
+        return self.likeness.sentence
+
+    @property
     def _heading(self) -> str:
-        if not self.likeness.alike:
+        if not self.alike:
             return "not reproduced"
         if self.edited or self.repainted:
             return "touched, though it can be redrawn"
         if not self.same:
             return "within limits, but of another mesh"
-        return "reproduced bit for bit" if not self.likeness.pixels else "reproduced within limits"
+        return "reproduced bit for bit" if self.untouched else "reproduced within limits"
 
     def _other_versions(self) -> str:
         maker = self.versions.get(_MAKER)
@@ -132,7 +148,7 @@ class Verdict:
         made = f"made by Curvelight {maker[0]}, this is {maker[1]}" if maker else "made"
         made += f" with {others}" if others else ""
         advice = f"; install Curvelight {maker[0]} to make the same picture" if maker else ""
-        return made + ("" if self.likeness.alike else advice)
+        return made + ("" if self.alike else advice)
 
     def as_json(self) -> dict[str, object]:
         """Return the verdict as plain data.
@@ -187,7 +203,8 @@ def verify(
     then = stored.record
     if mesh is not None:
         then = replace(then, session=replace(then.session, mesh=mesh))
-    made = _redrawn(path, then, stored.edited, pipeline)
+    with redrawing(path, then, stored.edited):
+        made = render(then.session, pipeline)
     now = record_of(then.session, pipeline, made)
     if threshold is None and elsewhere(then, now):
         threshold = THRESHOLD
@@ -202,14 +219,36 @@ def verify(
     )
 
 
-def _redrawn(path: Path, record: Record, edited: bool, pipeline: Pipeline) -> Picture:
+@contextmanager
+def redrawing(path: Path, record: Record, edited: bool) -> Iterator[None]:
+    """Say what keeps a picture from being drawn again.
+
+    Parameters
+    ----------
+    path : Path
+        Its file.
+    record : Record
+        How it was made.
+    edited : bool
+        Whether its metadata were edited.
+
+    Yields
+    ------
+    None
+        To draw in.
+
+    Raises
+    ------
+    PictureError
+        If its mesh is not there, or a name or value in its record is not known here.
+    """
     session: Session = record.session
     if not session.mesh.startswith(PREFIX) and not Path(session.mesh).exists():
         raise PictureError(
             f"{path}: its mesh is not at {session.mesh}; say where it is: --mesh FILE"
         )
     try:
-        return render(session, pipeline)
+        yield
     except ParameterError as error:
         reason = (
             "its metadata were edited after it was written"

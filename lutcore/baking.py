@@ -199,9 +199,8 @@ def _bake(material: Material, samples: int, profile: DiffusionProfile) -> PsiTab
         of_shape = profile.total(shaped)
         psi[channel] = (L1 - u * L0) / of_shape
         slope[channel] = -np.cosh(t) * L0 / of_shape  # psi' = -L0, dpsi/dt = psi' cosh t
-    table = PsiTable(
-        psi, slope, reach, total, material.mean_free_path, mean_square, material.eta, floored
-    )
+    eta = np.array(material.eta)
+    table = PsiTable(psi, slope, reach, total, material.mean_free_path, mean_square, eta, floored)
     for array in table.arrays().values():
         array.setflags(write=False)
     return table

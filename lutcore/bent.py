@@ -133,7 +133,7 @@ def bent_exitance(
     tables: tuple[BentTable, BentTable, BentTable],
     total: FloatArray,
     length: FloatArray,
-    eta: float = 1.0,
+    eta: FloatArray | None = None,
 ) -> FloatArray:
     """Shade with one table for each channel, s being that of the mean convex curvature.
 
@@ -147,8 +147,8 @@ def bent_exitance(
         What the result is multiplied by.
     length : ndarray, shape=(3,)
         s = length (k1 + k2)/2 with concave curvature 0, mm.
-    eta : float
-        Refractive index that the flat surface lets light in by; 1 for none.
+    eta : ndarray, shape=(3,), optional
+        Refractive index that the flat surface lets light in by; if not given, none.
 
     Returns
     -------
@@ -162,7 +162,8 @@ def bent_exitance(
         inputs.lights,
         total,
         length,
-        eta,
+        # Always a new array: one that cannot be written to would be compiled for apart.
+        np.ones(3) if eta is None else eta.copy(),
         np.stack([table.coefficients for table in tables]),
         np.array([table.scale for table in tables]),
         tables[0].limit,
@@ -246,7 +247,7 @@ def _exitance(
     lights: FloatArray,
     total: FloatArray,
     length: FloatArray,
-    eta: float,
+    eta: FloatArray,
     coefficients: FloatArray,
     scale: FloatArray,
     limit: float,
@@ -278,7 +279,7 @@ def _exitance(
                 for k in range(count):
                     column[k] = bend_column(cosine[k], inverse[c, k], span[c, k], columns)
                 for k in range(count):
-                    flat[k] = rounded(cosine[k], held[c, k], eta)
+                    flat[k] = rounded(cosine[k], held[c, k], eta[c])
                 brightness = lights[light, 8 + c] * total[c]
                 for k in range(count):
                     value = flat[k] + spline_at(coefficients[c], row[c, k], column[k])

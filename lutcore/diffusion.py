@@ -69,8 +69,10 @@ def optics(material: Material) -> tuple[Optics, Optics, Optics]:
         Red, green, blue.
     """
     red, green, blue = (
-        Optics(float(albedo), material.eta, float(length))
-        for albedo, length in zip(material.albedo, material.mean_free_path, strict=True)
+        Optics(float(albedo), eta, float(length))
+        for albedo, eta, length in zip(
+            material.albedo, material.eta, material.mean_free_path, strict=True
+        )
     )
     return red, green, blue
 

@@ -73,9 +73,9 @@ class Spread(NamedTuple):
         1/L, per l_u.
     square : ndarray, shape=(3,)
         <r^2>, l_u^2.
-    weights, corners : ndarray, shape=(hinges,)
+    weights, corners : ndarray, shape=(3, hinges)
         w_j and c_j.
-    entering : ndarray, shape=(k,)
+    entering : ndarray, shape=(3, k)
         c F_t(c) at even cosines from -1 to 1.
     """
 
@@ -93,7 +93,7 @@ class Known(NamedTuple):
 
     Parameters
     ----------
-    off : ndarray, shape=(k,)
+    off : ndarray, shape=(3, k)
         Its error on a flat surface, at the cosines of `Spread.entering`.
     bend : int
         Index into `lutcore.prediction.BENDS`.
@@ -242,7 +242,8 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
             way = (a, u, v, slope[i, 0] * x + slope[i, 1] * y + slope[i, 2] * z)
             for c in range(3):
                 spread = (length[c], psi_0[c], per_width[c], square[c])
-                error = _error(at, way, spread, radius, bend, w, corners, entering, off, parts)
+                fresnel = (w[c], corners[c], entering[c], off[c])
+                error = _error(at, way, spread, radius, bend, *fresnel, parts)
                 out[i, c] += lights[light, 8 + c] * strength * error
         if len(lights) == 0:
             steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
@@ -251,9 +252,8 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
                 for way in ((a, sine, 0.0, steepest * sine), (a, 0.0, sine, steepest * sine)):
                     for c in range(3):
                         spread = (length[c], psi_0[c], per_width[c], square[c])
-                        error = _error(
-                            at, way, spread, radius, bend, w, corners, entering, off, parts
-                        )
+                        fresnel = (w[c], corners[c], entering[c], off[c])
+                        error = _error(at, way, spread, radius, bend, *fresnel, parts)
                         out[i, c] = max(out[i, c], error)
     return out
 

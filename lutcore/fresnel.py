@@ -49,6 +49,28 @@ compiled_transmittance = compiled()(transmittance)
 """`transmittance` of one cosine, for use in compiled code."""
 
 
+@compiled()
+def transmittances(cosine: float, eta: FloatArray) -> tuple[float, float, float]:
+    """Return `transmittance` by channel, for use in compiled code.
+
+    Parameters
+    ----------
+    cosine : float
+        Cosine of the angle of incidence, 0 to 1.
+    eta : ndarray, shape=(3,)
+        Refractive index of each channel: where they are equal, it costs as much as one.
+
+    Returns
+    -------
+    tuple of 3 floats
+        Share of the light that enters, 0 to 1.
+    """
+    red = compiled_transmittance(cosine, eta[0])
+    if eta[0] == eta[1] and eta[0] == eta[2]:
+        return red, red, red
+    return red, compiled_transmittance(cosine, eta[1]), compiled_transmittance(cosine, eta[2])
+
+
 def _nodes() -> tuple[FloatArray, FloatArray]:
     x, weights = np.polynomial.legendre.leggauss(_NODES)
     return 0.5 * (x + 1.0), 0.5 * weights
@@ -192,3 +214,22 @@ def hinges(eta: float, count: int) -> Hinges:
     dense = np.linspace(0.0, 1.0, 4001)
     error = np.abs(_ramps(dense, inner) @ weights - dense * transmittance(dense, eta)).max()
     return Hinges(np.concatenate(([0.0], inner)), weights, float(error))
+
+
+def hinges_of(eta: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Fit c F_t(c) by hinges for each channel of a material.
+
+    Parameters
+    ----------
+    eta : ndarray, shape=(3,)
+        Refractive index of each channel.
+    count : int
+        Number of hinges, 1 or more.
+
+    Returns
+    -------
+    corners, weights : ndarray, shape=(3, count)
+        Those of `hinges`, one row for each channel.
+    """
+    fits = [hinges(float(index), count) for index in eta]
+    return np.stack([fit.corners for fit in fits]), np.stack([fit.weights for fit in fits])

@@ -20,15 +20,33 @@ import numpy as np
 
 from lutcore.arrays import AnyArray
 from lutcore.errors import CurvelightError
-from lutcore.isolated_child import JOB, PROBLEM, pack, receive, send, unpack
+from lutcore.isolated_child import JOB, PROBLEM, SHORTAGE, pack, receive, send, short, unpack
 from lutcore.progress import Progress, silent, tell
 
 _ROOT = Path(__file__).parents[1]
+_CHUNK = 1 << 16
+_LISTEN = 2.0  # seconds
 _POLL = 0.1  # seconds between looks at the clock and at the caller's wish to stop
 
 
 class IsolatedError(CurvelightError):
     """Foreign code failed, crashed, or went beyond its time or memory."""
+
+
+class ShortageError(IsolatedError):
+    """Foreign code asked for more memory than it was given.
+
+    Parameters
+    ----------
+    label : str
+        Who did the work.
+    memory : int
+        Bytes that it was given.
+    """
+
+    def __init__(self, label: str, memory: int) -> None:
+        super().__init__(f"{label} takes more than {memory >> 30} GiB of memory")
+        self.memory = memory
 
 
 def run_isolated(
@@ -69,7 +87,7 @@ def run_isolated(
     Raises
     ------
     IsolatedError
-        If it raised anything, crashed, or went beyond its time or memory.
+        If it raised anything, crashed, or went beyond its time; `ShortageError` beyond its memory.
     CancelledError
         If `progress` asked to stop.
     """
@@ -82,12 +100,15 @@ def run_isolated(
         child = Child()
         answer = child.call(payload, label, seconds, progress)
     if answer is None:
-        raise IsolatedError(f"{label} {child.last_words()}")
+        words = child.last_words()
+        raise ShortageError(label, memory) if child.was_short else IsolatedError(f"{label} {words}")
     if keep and not _idle:
         _idle.append(child)
     else:
         child.stop()
     found = unpack(answer)
+    if SHORTAGE in found:
+        raise ShortageError(label, memory)
     if PROBLEM in found:
         raise IsolatedError(f"{label} {found[PROBLEM]}")
     return found
@@ -120,8 +141,11 @@ class Child:
             env=os.environ | few | dict(environment or {}) | {"PYTHONPATH": os.pathsep.join(paths)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
         )
+        self._said = b""
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
 
     @property
     def pid(self) -> int:
@@ -181,6 +205,21 @@ class Child:
             answers.append(receive(self._process.stdout))
         except (OSError, ValueError):  # the pipe broke, or was closed by `stop`
             return
+
+    def _listen(self) -> None:
+        """Keep the end of what it says, which tells why it crashed."""
+        pipe = self._process.stderr
+        assert pipe is not None
+        with pipe:
+            while chunk := os.read(pipe.fileno(), _CHUNK):
+                self._said = (self._said + chunk)[-_CHUNK:]
+
+    @property
+    def was_short(self) -> bool:
+        """Whether a process that ended without an answer had asked for memory in vain."""
+        self._process.wait()
+        self._listener.join(_LISTEN)  # for ever only if it has children that live on
+        return short(self._said.decode(errors="replace"))
 
     def last_words(self) -> str:
         """Say what became of a process that ended without an answer.

@@ -14,7 +14,15 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-JOB, PROBLEM = "isolated job", "isolated problem"
+JOB, PROBLEM, SHORTAGE = "isolated job", "isolated problem", "isolated shortage"
+# How C++, VTK, NumPy and the system say that there was no memory.
+_SHORTAGES = (
+    "bad_alloc",
+    "bad_array_new_length",
+    "Unable to allocate",
+    "Cannot allocate memory",
+    "failed to map segment",
+)
 _HEADER = 8  # bytes that tell the length of what follows
 
 
@@ -89,6 +97,22 @@ def receive(pipe: IO[bytes]) -> bytes | None:
     return content if len(content) == size else None
 
 
+def short(said: str) -> bool:
+    """Tell whether words of foreign code are of memory that it did not get.
+
+    Parameters
+    ----------
+    said : str
+        An error's text, or what a process wrote before it crashed.
+
+    Returns
+    -------
+    bool
+        True if they are.
+    """
+    return any(words in said for words in _SHORTAGES)
+
+
 def main() -> None:
     """Answer jobs until the other side has gone."""
     # What a library prints must not come between the bytes of an answer.
@@ -106,8 +130,10 @@ def _answer(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         found: dict[str, NDArray[Any]] = getattr(importlib.import_module(module), name)(**arrays)
         return found
     except MemoryError:
-        return {PROBLEM: np.array(f"takes more than {job['memory'] >> 30} GiB of memory")}
+        return {SHORTAGE: np.array(True)}
     except Exception as error:  # whatever it is, it must reach the caller as words
+        if short(str(error)):
+            return {SHORTAGE: np.array(True)}
         return {PROBLEM: np.array(f"failed on it ({type(error).__name__}: {error})")}
 
 

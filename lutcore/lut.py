@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from lutcore.arrays import AnyArray, BoolArray, FloatArray, finite
 from lutcore.compiled import compiled
 from lutcore.errors import ParameterError
+from lutcore.fresnel import mean_transmittance
 
 BLOCK = 512
 """Vertices that `even_forms` is best given at once: few enough to stay in the first cache."""
@@ -223,7 +224,7 @@ class PsiTable:
         l_u, mm.
     mean_square : ndarray, shape=(3,)
         <r^2> of the profile, l_u^2.
-    eta : float
+    eta : ndarray, shape=(3,)
         Refractive index of the material.
     floored : ndarray of bool, shape=(3,)
         Whether the channel has so little absorption that the glow was made that of the least
@@ -236,7 +237,7 @@ class PsiTable:
     total: FloatArray
     mean_free_path: FloatArray
     mean_square: FloatArray
-    eta: float
+    eta: FloatArray
     floored: BoolArray
 
     @property
@@ -248,6 +249,11 @@ class PsiTable:
     def samples(self) -> int:
         """Number of knots."""
         return len(self.psi[0])
+
+    @cached_property
+    def entering(self) -> FloatArray:
+        """The paper's <F_t>, the share of diffuse light that enters; shape (3,)."""
+        return np.array([mean_transmittance(float(eta)) for eta in self.eta])
 
     @cached_property
     def inverse_step(self) -> FloatArray:
@@ -338,7 +344,8 @@ class PsiTable:
         return cls(
             psi=psi,
             slope=finite("slope", arrays["slope"], psi.shape),
-            eta=float(finite("eta", arrays["eta"], ())),
+            # Tables were once stored with one index for all channels.
+            eta=np.full(3, finite("eta", arrays["eta"], (), (3,))),
             floored=finite("floored", arrays["floored"], (3,)) != 0.0,
             **vectors,
         )

@@ -12,7 +12,7 @@ from lutcore.errors import ParameterError
 _ETA_RANGE = (1.0, 3.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Material:
     """A translucent material, by channel (linear red, green, blue).
 
@@ -20,12 +20,17 @@ class Material:
     ----------
     name : str
         Its name.
-    scattering : tuple of 3 floats
+    scattering : array_like, shape=(3,)
         Reduced scattering coefficient sigma_s', 1/mm, above 0.
-    absorption : tuple of 3 floats
+    absorption : array_like, shape=(3,)
         Absorption coefficient sigma_a, 1/mm, 0 or more.
-    eta : float
-        Refractive index relative to the air outside, 1 to 3.
+    eta : array_like, shape=() or (3,)
+        Refractive index relative to the air outside, 1 to 3; one number stands for all channels.
+
+    Attributes
+    ----------
+    scattering, absorption, eta : tuple of 3 floats
+        Plain numbers, so that equal materials are equal keys of the table cache.
 
     Raises
     ------
@@ -36,22 +41,24 @@ class Material:
     name: str
     scattering: tuple[float, float, float]
     absorption: tuple[float, float, float]
-    eta: float
+    eta: tuple[float, float, float]
 
-    def __post_init__(self) -> None:
-        scattering = finite("scattering", self.scattering, (3,))
-        absorption = finite("absorption", self.absorption, (3,))
-        eta = float(finite("eta", self.eta, ()))
-        if (scattering <= 0.0).any():
-            raise ParameterError(f"scattering = {self.scattering!r} must be above 0 per mm")
-        if (absorption < 0.0).any():
-            raise ParameterError(f"absorption = {self.absorption!r} must be 0 or more per mm")
-        if not _ETA_RANGE[0] <= eta <= _ETA_RANGE[1]:
-            raise ParameterError.out_of_range("eta", self.eta, *_ETA_RANGE)
-        # Plain numbers, so that equal materials are equal keys of the table cache.
-        object.__setattr__(self, "scattering", tuple(scattering.tolist()))
-        object.__setattr__(self, "absorption", tuple(absorption.tolist()))
-        object.__setattr__(self, "eta", eta)
+    def __init__(
+        self, name: str, scattering: ArrayLike, absorption: ArrayLike, eta: ArrayLike
+    ) -> None:
+        scatters = finite("scattering", scattering, (3,))
+        absorbs = finite("absorption", absorption, (3,))
+        indices = np.broadcast_to(finite("eta", eta, (), (3,)), 3)
+        if (scatters <= 0.0).any():
+            raise ParameterError(f"scattering = {scattering!r} must be above 0 per mm")
+        if (absorbs < 0.0).any():
+            raise ParameterError(f"absorption = {absorption!r} must be 0 or more per mm")
+        if (indices < _ETA_RANGE[0]).any() or (indices > _ETA_RANGE[1]).any():
+            raise ParameterError.out_of_range("eta", eta, *_ETA_RANGE)
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "scattering", tuple(scatters.tolist()))
+        object.__setattr__(self, "absorption", tuple(absorbs.tolist()))
+        object.__setattr__(self, "eta", tuple(indices.tolist()))
 
     @property
     def mean_free_path(self) -> FloatArray:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
 from lutcore.error_terms import Known, Spread, Where, around, errors, irradiances
-from lutcore.fresnel import hinges, mean_transmittance, transmittance
+from lutcore.fresnel import hinges_of, transmittance
 from lutcore.lut import PsiTable
 
 if TYPE_CHECKING:
@@ -59,8 +59,9 @@ class Knowledge:
 
     Parameters
     ----------
-    flat : ndarray, shape=(257,)
-        What it gives on a flat surface under light at `COSINES`, per R_d and unit irradiance.
+    flat : ndarray, shape=(257,) or (3, 257)
+        What it gives on a flat surface under light at `COSINES`, per R_d and unit irradiance; by
+        channel where their refractive indices differ.
     bend : str
         The curvature that its glow follows: ``none``, the ``mean``, the ``rms`` of the two, or the
         ``tensor`` along the light. Concave curvature is taken as 0.
@@ -200,14 +201,14 @@ class Scene:
 
     @property
     def entering(self) -> FloatArray:
-        """Lambert with F_t(N.w) at `COSINES`: what a flat surface gives."""
+        """Lambert with F_t(N.w) at `COSINES`: what a flat surface gives; shape (3, 257)."""
         lit = np.maximum(COSINES, 0.0)
-        return lit * transmittance(lit, self.table.eta)
+        return np.stack([lit * transmittance(lit, float(eta)) for eta in self.table.eta])
 
     @property
     def mean_entering(self) -> FloatArray:
-        """Lambert with <F_t> at `COSINES`."""
-        return np.maximum(COSINES, 0.0) * mean_transmittance(self.table.eta)
+        """Lambert with <F_t> at `COSINES`; shape (3, 257)."""
+        return np.maximum(COSINES, 0.0) * self.table.entering[:, None]
 
     @property
     def irradiance(self) -> FloatArray:
@@ -275,16 +276,18 @@ class Scene:
         """
         off = np.abs(model.flat - self.entering)
         # Where the two cross, the error is not less than beside it: curvature moves the crossing.
-        near = np.lib.stride_tricks.sliding_window_view(np.pad(off, _NEAR, "edge"), 2 * _NEAR + 1)
-        table, fit = self.table, hinges(self.table.eta, _HINGES)
+        padded = np.pad(off, ((0, 0), (_NEAR, _NEAR)), "edge")
+        near = np.lib.stride_tricks.sliding_window_view(padded, 2 * _NEAR + 1, axis=1)
+        table = self.table
+        corners, weights_of = hinges_of(table.eta, _HINGES)
         psi_0 = np.ascontiguousarray(table.psi[:, 0])
         optics = Spread(
             table.mean_free_path,
             psi_0,
             8.0 * psi_0 / (7.0 * table.mean_square),  # int psi = <r^2>/8
             table.mean_square,
-            fit.weights,
-            fit.corners,
+            weights_of,
+            corners,
             self.entering,
         )
         where = Where(
@@ -300,5 +303,5 @@ class Scene:
             self.bumps,
             self.radius,
         )
-        known = Known(near.max(axis=1), BENDS.index(model.bend), weights)
+        known = Known(near.max(axis=2), BENDS.index(model.bend), weights)
         return errors(where, self.lights, optics, known)

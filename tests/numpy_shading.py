@@ -9,7 +9,7 @@ from lutcore.baking import bake, glowing, resolved
 from lutcore.bent import SHARPEST, BentTable
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diffusion import diffusion_profile, optics
-from lutcore.fresnel import hinges, mean_transmittance, transmittance
+from lutcore.fresnel import hinges, transmittance
 from lutcore.lights import DirectionalLight, Light, PointLight
 from lutcore.lut import PsiTable
 from lutcore.mesh import TriangleMesh
@@ -46,7 +46,7 @@ def lambert(
         w, irradiance = light_vectors(light, mesh.vertices)
         cosine = np.einsum("ij,ij->i", curvatures.normals, w)
         out += irradiance * np.maximum(cosine, 0.0)[:, None]
-    return out * (table.total * mean_transmittance(table.eta))
+    return out * (table.total * table.entering)
 
 
 def wrap(
@@ -59,7 +59,7 @@ def wrap(
         w, irradiance = light_vectors(light, mesh.vertices)
         cosine = np.einsum("ij,ij->i", curvatures.normals, w)
         out += irradiance * np.maximum((cosine + 0.2) / 1.2, 0.0)[:, None]
-    return out * (table.total * mean_transmittance(table.eta))
+    return out * (table.total * table.entering)
 
 
 def kolchin2007(
@@ -78,7 +78,7 @@ def kolchin2007(
         for channel in range(3):
             p = even_form(cosine, table.mean_free_path[channel] * kappa, table, channel)
             out[:, channel] += irradiance[:, channel] * p
-    return out * (table.total * mean_transmittance(table.eta))
+    return out * (table.total * table.entering)
 
 
 def penner2011(
@@ -96,7 +96,7 @@ def penner2011(
         for channel, ring in enumerate(rings):
             s = np.minimum(table.mean_free_path[channel] * bend, ring.limit)
             out[:, channel] += irradiance[:, channel] * np.maximum(bent(cosine, s, ring), 0.0)
-    return out * (table.total * mean_transmittance(table.eta))
+    return out * (table.total * table.entering)
 
 
 def bent(a: FloatArray, s: FloatArray, table: BentTable, eta: float = 1.0) -> FloatArray:
@@ -134,7 +134,7 @@ def curvature_lut(
 ) -> FloatArray:
     """The default model from principal curvatures and directions, array by array."""
     table = bake(material)
-    fit = hinges(table.eta, 4)
+    fits = [hinges(eta, 4) for eta in table.eta]
     k1, k2 = np.maximum(curvatures.k1, 0.0), np.maximum(curvatures.k2, 0.0)
     out = np.zeros(mesh.vertices.shape)
     for light in lights:
@@ -146,6 +146,7 @@ def curvature_lut(
         for channel in range(3):
             b = table.mean_free_path[channel] * kappa
             glow = np.zeros(len(b))
+            fit = fits[channel]
             for corner, weight in zip(fit.corners, fit.weights, strict=True):
                 glow += weight * even_form(cosine - corner, b, table, channel)
             out[:, channel] += irradiance[:, channel] * glow

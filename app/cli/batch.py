@@ -11,10 +11,14 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli import options
 from app.cli.batch_job import job_from
 from app.cli.batch_said import Told, say_plan
 from app.cli.console import note
+from app.cli.options.comparison import add_comparison
+from app.cli.options.mesh import add_repairs, add_volume
+from app.cli.options.methods import add_curvature, add_peers
+from app.cli.options.picture import add_colors, add_picture
+from app.cli.options.shading import add_shading
 from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -96,16 +100,14 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     )
     group.add_argument("--parquet", action="store_true", help="write summary.parquet too")
     group.add_argument("--dask", metavar="ADDRESS", help="run on a Dask cluster: its scheduler")
-    parser.add_argument("--models", metavar="A,B[,...]", help="shading models, for compare")
-    parser.add_argument(
-        "--difference", action="store_const", const=True, help="CIEDE2000 against the first"
-    )
-    options.add_repairs(parser)
-    options.add_shading(parser, words)
-    options.add_curvature(parser, words)
-    options.add_peers(parser)
-    options.add_colors(parser, several=True)
-    options.add_picture(parser)
+    add_volume(parser)
+    add_repairs(parser)
+    add_shading(parser, words)
+    add_curvature(parser, words)
+    add_peers(parser)
+    add_colors(parser, several=True)
+    add_picture(parser)
+    add_comparison(parser)
     parser.set_defaults(mesh=None, own_mesh=True)
 
 

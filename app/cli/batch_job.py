@@ -10,8 +10,8 @@ from msgspec.structs import replace
 from app import session as state
 from app.batch.job import OUTPUTS, Fields, Job
 from app.batch.job_file import read, said_by
-from app.cli import options
-from app.session import Method, Session
+from app.cli.options.session import said
+from app.session import Session
 from lutcore.errors import ParameterError
 
 
@@ -67,15 +67,8 @@ def _with_flags(job: Job, arguments: argparse.Namespace) -> Job:
 
 def _overrides(arguments: argparse.Namespace) -> Fields:
     start = state.read(arguments.session) if arguments.session else Session()
-    fixed: dict[str, Any] = {"difference": arguments.difference}
-    if arguments.models:
-        names = [name.strip() for name in arguments.models.split(",")]
-        fixed["compared"] = tuple(Method(name) for name in names)
-    session = options.session_from(arguments, **fixed)
-    said = {
-        name: getattr(session, name)
-        for name in Session.__struct_fields__
-        if getattr(session, name) != getattr(start, name)
-    }
+    fields = said(arguments, start)
+    state.checked(start, **fields)
     file = said_by(arguments.session) if arguments.session else {}
-    return file | msgspec.to_builtins(said)
+    plain: Fields = msgspec.to_builtins(fields)
+    return file | plain

@@ -5,8 +5,13 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.cli import charting, options
+from app.cli import charting
 from app.cli.console import progress, table
+from app.cli.options.mesh import add_mesh
+from app.cli.options.methods import add_curvature
+from app.cli.options.picture import add_picture
+from app.cli.options.session import session_from
+from app.cli.options.shading import add_shading
 from app.cli.work import Run
 from app.writing import write_bytes
 from lutcore.progress import part
@@ -32,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     """
     from app.chart.shading import TOLERANCES, Trying
 
-    options.add_mesh(parser, optional=True)
+    add_mesh(parser, optional=True)
     parser.add_argument(
         "--show",
         choices=(_CHART, *_PICTURES),
@@ -44,9 +49,9 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     who.add_argument("--models", metavar="A,B", help="shading models (all); see curvelight models")
     usual = ", ".join(f"{value:g} of {metric}" for metric, value in TOLERANCES.items())
     charting.add_measuring(parser, Trying, usual)
-    options.add_shading(parser, words, with_model=False)
-    options.add_curvature(parser, words)
-    options.add_picture(parser)
+    add_shading(parser, words, with_model=False)
+    add_curvature(parser, words)
+    add_picture(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -68,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     from lutcore.shading import shading_models
 
     start = time.perf_counter()
-    work = Run(arguments, options.session_from(arguments, view="compare"))
+    work = Run(arguments, session_from(arguments, view="compare"))
     work.require(*_PICTURES.get(arguments.show, SUFFIXES))
     names = named(arguments.models, "shading model", shading_models())
     trying = charting.measuring_from(arguments, Trying)

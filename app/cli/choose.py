@@ -11,9 +11,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli import options
 from app.cli.choose_said import text
 from app.cli.console import answer, note, progress
+from app.cli.options.methods import add_curvature
+from app.cli.options.session import session_from
+from app.cli.options.shading import add_shading
 from lutcore.parameters import Number
 
 if TYPE_CHECKING:
@@ -56,8 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
         help="do without the check at a sample of the vertices",
     )
     group.add_argument("--again", action="store_true", help="measure the models' costs again")
-    options.add_shading(parser, words, with_model=False)
-    options.add_curvature(parser, words)
+    add_shading(parser, words, with_model=False)
+    add_curvature(parser, words)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -82,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
     start = time.perf_counter()
     given = arguments.tolerance
     value = DEFAULTS[arguments.metric] if given is None else _TOLERANCE.check("tolerance", given)
-    session = options.session_from(arguments, view="shade")
+    session = session_from(arguments, view="shade")
     pipeline = Pipeline(progress(arguments))
     subject = pipeline.subject(session)
     size = pipeline.mm_per_unit(session)

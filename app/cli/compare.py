@@ -5,17 +5,21 @@ surface. What is shaded has one exposure.
 """
 
 import argparse
-from typing import get_args
 
 from msgspec.structs import replace
 
-from app.cli import options
+from app.cli.options.comparison import add_comparison
+from app.cli.options.mesh import add_mesh
+from app.cli.options.methods import add_curvature
+from app.cli.options.picture import add_colors, add_picture
+from app.cli.options.session import session_from
+from app.cli.options.shading import add_shading
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.contestants import check, has_bar, size
 from app.differences import sentence
 from app.quantities import QUANTITIES
-from app.session import ComparedBy, Method, Session
+from app.session import Session
 from lutcore.errors import ParameterError
 
 
@@ -29,35 +33,12 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    output = options.add_mesh(parser)
-    parser.add_argument(
-        "--models",
-        metavar="A,B[,...]",
-        help="what is compared, two or more: shading models, or what --by says",
-    )
-    parser.add_argument(
-        "--by",
-        choices=get_args(ComparedBy),
-        dest="compared_by",
-        help="whether --models names shading models, estimators (by the quantity that --quantity "
-        "says) or materials (model)",
-    )
-    parser.add_argument(
-        "--wipe",
-        type=float,
-        metavar="SHARE",
-        help="show two on one surface, the first left of this share of its width, 0 to 1",
-    )
-    parser.add_argument(
-        "--difference",
-        action="store_const",
-        const=True,
-        help="add how far the others are from the first: CIEDE2000, or of estimators the quantity",
-    )
-    options.add_shading(parser, words, with_model=False)
-    options.add_curvature(parser, words)
-    options.add_colors(parser)
-    options.add_picture(parser)
+    output = add_mesh(parser)
+    add_comparison(parser)
+    add_shading(parser, words, with_model=False)
+    add_curvature(parser, words)
+    add_colors(parser)
+    add_picture(parser)
     add_performing(parser, output)
 
 
@@ -95,17 +76,11 @@ def session_of(arguments: argparse.Namespace) -> Session:
     SessionError, ParameterError
         If a file or a value is not right.
     """
-    fixed: dict[str, object] = {"view": "compare"}
-    if arguments.models:
-        names = [name.strip() for name in arguments.models.split(",")]
-        fixed["compared"] = tuple(Method(name) for name in names)
-    elif not arguments.session:
+    if not arguments.compared and not arguments.session:
         raise ParameterError("say which models: --models lambert,curvature-lut")
-    for name in ("compared_by", "wipe", "difference"):
-        fixed[name] = getattr(arguments, name)
-    made = options.session_from(arguments, **fixed)
+    made = session_from(arguments, view="compare")
     check(made)
-    if arguments.size is None and arguments.models and not arguments.session:
+    if arguments.size is None and arguments.compared and not arguments.session:
         return replace(made, size=size(made))
     return made
 

@@ -12,8 +12,11 @@ import shlex
 
 import numpy as np
 
-from app.cli import options
 from app.cli.console import note, table
+from app.cli.options.mesh import add_mesh
+from app.cli.options.methods import add_curvature, add_peers
+from app.cli.options.picture import add_colors, add_picture
+from app.cli.options.session import session_from
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.findings import Findings, findings
@@ -39,11 +42,11 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    output = options.add_mesh(parser)
-    options.add_curvature(parser, words)
-    options.add_peers(parser)
-    options.add_colors(parser, several=True)
-    options.add_picture(parser)
+    output = add_mesh(parser)
+    add_curvature(parser, words)
+    add_peers(parser)
+    add_colors(parser, several=True)
+    add_picture(parser)
     add_performing(parser, output, lights=False)
     parser.set_defaults(command=shlex.join(["curvelight", "curvature", *words]))
 
@@ -82,7 +85,7 @@ def session_of(arguments: argparse.Namespace) -> Session:
     SessionError, ParameterError
         If a file or a value is not right.
     """
-    return options.session_from(arguments, view="curvature", **_fixed(arguments))
+    return session_from(arguments, view="curvature", **_fixed(arguments))
 
 
 def _measure(work: Run) -> int:

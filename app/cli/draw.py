@@ -6,7 +6,9 @@ flags stand above what the session says.
 
 import argparse
 
-from app.cli import options
+from app.cli.options.mesh import add_mesh
+from app.cli.options.picture import add_picture
+from app.cli.options.session import session_from
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.session import Session
@@ -23,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    output = options.add_mesh(parser)
-    options.add_picture(parser)
+    output = add_mesh(parser)
+    add_picture(parser)
     add_performing(parser, output)
 
 
@@ -64,7 +66,7 @@ def session_of(arguments: argparse.Namespace) -> Session:
     """
     if arguments.session is None:
         raise ParameterError("say which session: --session FILE, as the window saves it")
-    return options.session_from(arguments)
+    return session_from(arguments)
 
 
 def _draw(work: Run) -> int:

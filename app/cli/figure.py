@@ -6,7 +6,11 @@ Without MESH, the scanned marble face. The right side shows sqrt((k1^2 + k2^2)/2
 
 import argparse
 
-from app.cli import options
+from app.cli.options.mesh import add_mesh
+from app.cli.options.methods import add_curvature
+from app.cli.options.picture import add_colors, add_picture
+from app.cli.options.session import session_from
+from app.cli.options.shading import add_shading
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.quantities import QUANTITIES
@@ -25,11 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    output = options.add_mesh(parser, optional=True)
-    options.add_curvature(parser, words)
-    options.add_shading(parser, words)
-    options.add_colors(parser)
-    options.add_picture(parser)
+    output = add_mesh(parser, optional=True)
+    add_curvature(parser, words)
+    add_shading(parser, words)
+    add_colors(parser)
+    add_picture(parser)
     add_performing(parser, output)
 
 
@@ -68,7 +72,7 @@ def session_of(arguments: argparse.Namespace) -> Session:
         If a file or a value is not right.
     """
     fixed = {} if arguments.size or arguments.session else {"size": _SIZE}
-    return options.session_from(arguments, view="figure", **fixed)
+    return session_from(arguments, view="figure", **fixed)
 
 
 def _draw(work: Run) -> int:

@@ -6,8 +6,8 @@
 import argparse
 from pathlib import Path
 
-from app.cli import options
 from app.cli.console import answer
+from app.cli.options.methods import add_profile, profile_from
 from app.session import Session
 
 
@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     """
     parser.add_argument("material", metavar="MATERIAL", help="see curvelight materials")
     parser.add_argument("-o", "--output", required=True, type=Path, metavar="OUT", help="result")
-    options.add_profile(parser, words)
+    add_profile(parser, words)
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--samples", type=int, metavar="N", help="knots of psi; else 1e-6 exact")
     size.add_argument(
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     from lutcore.baking import bake, bake_plane
     from lutcore.diffusion import diffusion_profile
 
-    method = options.profile_from(arguments, Session())
+    method = profile_from(arguments, Session())
     profile = diffusion_profile(method.name, **method.parameters)
     baked = bake(arguments.material, arguments.samples, profile)
     if arguments.plane is None:

@@ -1,6 +1,7 @@
 """List the materials with their coefficients: reduced scattering, absorption, refractive index."""
 
 import argparse
+from collections.abc import Iterable
 
 from app.cli.console import answer, table
 
@@ -42,12 +43,13 @@ def run(arguments: argparse.Namespace) -> int:
         result[name] = {
             "scattering_per_mm": list(found.scattering),
             "absorption_per_mm": list(found.absorption),
-            "eta": found.eta,
+            "eta": list(found.eta),
             "diffuse_reflectance": baked.total.tolist(),
             "glow_mm": glow.tolist(),
             "glow_floored": baked.floored.tolist(),
         }
-        cells = [found.scattering, found.absorption, (found.eta,), baked.total, glow]
+        cells: list[Iterable[float]] = [found.scattering, found.absorption, found.eta]
+        cells += [baked.total, glow]
         mark = "*" if baked.floored.any() else ""
         rows.append([name + mark, *(" ".join(f"{value:.3g}" for value in cell) for cell in cells)])
     text = (

@@ -7,7 +7,11 @@ vertex colours that a picture adds).
 
 import argparse
 
-from app.cli import options
+from app.cli.options.mesh import add_mesh
+from app.cli.options.methods import add_curvature
+from app.cli.options.picture import add_colors, add_picture
+from app.cli.options.session import session_from
+from app.cli.options.shading import add_shading
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
 from app.session import Session
@@ -23,11 +27,11 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     words : list of str
         The command's arguments.
     """
-    output = options.add_mesh(parser)
-    options.add_shading(parser, words)
-    options.add_curvature(parser, words)
-    options.add_colors(parser)
-    options.add_picture(parser)
+    output = add_mesh(parser)
+    add_shading(parser, words)
+    add_curvature(parser, words)
+    add_colors(parser)
+    add_picture(parser)
     add_performing(parser, output)
 
 
@@ -65,7 +69,7 @@ def session_of(arguments: argparse.Namespace) -> Session:
     SessionError, ParameterError
         If a file or a value is not right.
     """
-    return options.session_from(arguments, view="shade")
+    return session_from(arguments, view="shade")
 
 
 def _shade(work: Run) -> int:

@@ -1,8 +1,9 @@
 """The material: one that was measured, or its coefficients on sliders."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
-from qtpy.QtWidgets import QComboBox, QFormLayout, QGridLayout, QLabel, QWidget
+from qtpy.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGridLayout, QLabel, QWidget
 
 from app.gui.slider import Slider
 from app.session import Substance
@@ -62,21 +63,38 @@ class MaterialForm(QWidget):
             )
             for channel in _CHANNELS
         ]
-        self.eta = Slider(
-            "Refractive index", "Refractive index eta against the air outside, 1 to 3", 1.0, 3.0
-        )
+        self.eta = [
+            Slider(
+                f"Refractive index, {channel}",
+                f"Refractive index eta of {channel} light against the air outside, 1 to 3",
+                1.0,
+                3.0,
+            )
+            for channel in _CHANNELS
+        ]
+        self.linked = QCheckBox("One index for all colours", self)
+        self.linked.setToolTip("The three refractive indices move together")
+        self.linked.setChecked(True)
+        self.linked.clicked.connect(self._on_linked)
         rows = QFormLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         rows.addRow("Material", self.preset)
-        for symbol, sliders in (("\u03c3s\u2032", self.scattering), ("\u03c3a", self.absorption)):
+        for symbol, sliders in (
+            ("\u03c3s\u2032", self.scattering),
+            ("\u03c3a", self.absorption),
+            ("\u03b7", self.eta),
+        ):
             for channel, slider in zip(_CHANNELS, sliders, strict=True):
                 rows.addRow(f"{symbol} {channel}", slider)
-        rows.addRow("\u03b7", self.eta)
+        rows.addRow(self.linked)
         self.facts = _Facts()
         rows.addRow(self.facts)
-        for slider in (*self.scattering, *self.absorption, self.eta):
+        for slider in self.eta:
+            slider.changed.connect(self._on_eta)
+        for slider in (*self.scattering, *self.absorption):
             slider.changed.connect(lambda _: self._on_slider())
+        for slider in (*self.scattering, *self.absorption, *self.eta):
             slider.pressed.connect(begin)
             slider.released.connect(end)
 
@@ -103,22 +121,43 @@ class MaterialForm(QWidget):
         for sliders, values in (
             (self.scattering, found.scattering),
             (self.absorption, found.absorption),
+            (self.eta, found.eta),
         ):
             for slider, value in zip(sliders, values, strict=True):
                 slider.follow(value)
-        self.eta.follow(found.eta)
+        if len(set(found.eta)) > 1:
+            self.linked.setChecked(False)
 
     def _on_preset(self, index: int) -> None:
         if index < len(materials()):
             self._changed(self.preset.itemText(index))
+
+    def _on_eta(self, value: float) -> None:
+        if self.linked.isChecked():
+            self._link(value)
+        self._on_slider()
+
+    def _on_linked(self, linked: bool) -> None:
+        red = self.eta[0].value
+        if linked and any(slider.value != red for slider in self.eta):
+            self._link(red)
+            self._on_slider()
+
+    def _link(self, value: float) -> None:
+        for slider in self.eta:
+            slider.follow(value)
 
     def _on_slider(self) -> None:
         name = self._shown.name if self._shown else ""
         base = name.removesuffix(CHANGED)
         s_red, s_green, s_blue = (slider.value for slider in self.scattering)
         a_red, a_green, a_blue = (slider.value for slider in self.absorption)
+        n_red, n_green, n_blue = (slider.value for slider in self.eta)
         made = Substance(
-            base + CHANGED, (s_red, s_green, s_blue), (a_red, a_green, a_blue), self.eta.value
+            base + CHANGED,
+            (s_red, s_green, s_blue),
+            (a_red, a_green, a_blue),
+            (n_red, n_green, n_blue),
         )
         self._changed(base if _same(base, made) else made)
 
@@ -187,9 +226,4 @@ def _same(name: str, made: Substance) -> bool:
     """Tell whether sliders are back at the values of the named material."""
     if name not in materials():
         return False
-    known = material(name)
-    return (known.scattering, known.absorption, known.eta) == (
-        made.scattering,
-        made.absorption,
-        made.eta,
-    )
+    return material_of(made) == replace(material(name), name=made.name)

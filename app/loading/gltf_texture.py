@@ -7,7 +7,8 @@ import numpy as np
 from app.loading.errors import BadContentError
 from app.loading.gltf_arrays import Arrays
 from app.loading.gltf_buffers import Buffers
-from app.loading.surface import RawTexture
+from app.loading.gltf_places import attribute, moved, wrap_of
+from app.loading.surface import RawPicture, RawTexture
 from lutcore.arrays import AnyArray, FloatArray
 
 # What a broken texture shows as: it costs the texture, never the mesh.
@@ -34,8 +35,8 @@ class Textures:
     ) -> None:
         self._document, self._arrays, self._buffers = document, arrays, buffers
         self._warnings = warnings
-        self._images: dict[int, int] = {}
-        self._contents: list[tuple[str, bytes]] = []
+        self._contents: dict[int, bytes] = {}
+        self._pictures: dict[RawPicture, int] = {}
         self._places: list[FloatArray] = []
         self._which: list[AnyArray] = []
 
@@ -53,15 +54,18 @@ class Textures:
         """
         uv, which = np.full((faces.size, 2), np.nan), -1
         try:
-            found = self._texture(primitive)
-            if found is not None:
-                which, name = found
-                places = self._coordinates(primitive["attributes"][name], count)
-                uv = places[faces.reshape(-1)]
+            material = self._material(primitive)
+            told = material.get("baseColorTexture")
+            if told is None:
+                which, uv = self._number(self._plain(material)), np.zeros((faces.size, 2))
+            else:
+                picture = self._picture(told, _tint(material))
+                places = self._coordinates(primitive["attributes"][attribute(told)], count)
+                uv = moved(places, told)[faces.reshape(-1)]
+                which = self._number(picture)
         except _BROKEN as error:
             problem = error.problem if isinstance(error, BadContentError) else repr(error)
             self._warnings.append(f"a part's texture cannot be used: {problem:.200}")
-            which = -1
         self._places.append(uv)
         self._which.append(np.full(len(faces), which))
 
@@ -71,29 +75,37 @@ class Textures:
         Returns
         -------
         RawTexture or None
-            None if there are none.
+            None if there are none. Colours without a picture are not worth one.
         """
         if not self._contents:
             return None
-        return RawTexture(np.concatenate(self._places), np.concatenate(self._which), self._contents)
+        return RawTexture(
+            np.concatenate(self._places), np.concatenate(self._which), list(self._pictures)
+        )
 
-    def _texture(self, primitive: dict[str, Any]) -> tuple[int, str] | None:
-        """Return the number of a part's picture, and the attribute with the places on it."""
+    def _material(self, primitive: dict[str, Any]) -> dict[str, Any]:
+        """Return what is said of a part's colour."""
         if "material" not in primitive:
-            return None
-        material = self._document["materials"][primitive["material"]]
-        told = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-        if told is None:
-            return None
-        if "KHR_texture_transform" in told.get("extensions", {}):
-            raise BadContentError("it is moved by KHR_texture_transform")
-        source = self._document["textures"][told["index"]]["source"]
-        if source not in self._images:
-            self._contents.append((f"image {source}", self._picture(source)))
-            self._images[source] = len(self._contents) - 1
-        return self._images[source], f"TEXCOORD_{int(told.get('texCoord', 0))}"
+            return {}
+        found = self._document["materials"][primitive["material"]]
+        color: dict[str, Any] = found.get("pbrMetallicRoughness", {})
+        return color
 
-    def _picture(self, source: int) -> bytes:
+    def _number(self, picture: RawPicture) -> int:
+        return self._pictures.setdefault(picture, len(self._pictures))
+
+    def _plain(self, material: dict[str, Any]) -> RawPicture:
+        return RawPicture("a colour", None, _tint(material))
+
+    def _picture(self, told: dict[str, Any], tint: tuple[float, float, float]) -> RawPicture:
+        texture = self._document["textures"][told["index"]]
+        source = texture["source"]
+        if source not in self._contents:
+            self._contents[source] = self._content(source)
+        wrap = wrap_of(self._document, texture)
+        return RawPicture(f"image {source}", self._contents[source], tint, wrap)
+
+    def _content(self, source: int) -> bytes:
         image = self._document["images"][source]
         if "bufferView" not in image:
             return self._buffers.named(image["uri"], f"image {source}")
@@ -110,5 +122,13 @@ class Textures:
         stored = self._arrays.get(index)
         if stored.shape[1] != 2:
             raise BadContentError("its coordinates are not pairs")
-        # The format counts from the upper left.
-        return np.stack([stored[:, 0], 1.0 - stored[:, 1].astype(np.float64)], axis=1)
+        return stored
+
+
+def _tint(material: dict[str, Any]) -> tuple[float, float, float]:
+    """Return baseColorFactor without its opacity."""
+    factor = np.array(material.get("baseColorFactor", (1.0,) * 4), dtype=np.float64)
+    if factor.shape != (4,) or not ((factor >= 0.0) & (factor <= 1.0)).all():
+        raise BadContentError("its baseColorFactor is not four numbers from 0 to 1")
+    red, green, blue, _ = factor.tolist()
+    return red, green, blue

@@ -10,7 +10,7 @@ from app.loading.errors import BadContentError
 from app.loading.surface import RawSurface
 from lutcore.arrays import AnyArray
 from lutcore.errors import MeshError
-from lutcore.isolated import IsolatedError, run_isolated
+from lutcore.isolated import IsolatedError, ShortageError, run_isolated
 
 # Reading takes about 10 ns a byte in VTK, 1 us in Python, the start half a second. A loop without
 # end is stopped by the processor's time, however busy the machine is; waiting, by the clock.
@@ -20,6 +20,10 @@ _SLOWNESS = 6
 _BYTES, _BYTES_PER_BYTE = 4 << 30, 64
 # A reader's complaint goes into one line.
 _LONGEST = 300
+_REMEDY = (
+    "decimate it or convert it to PLY, which is read without such a limit; if it should be small, "
+    "it is damaged: copy or export it again"
+)
 
 
 def read_guarded(module: str, content: bytes) -> RawSurface:
@@ -80,14 +84,19 @@ def read_file_guarded(module: str, content: bytes, suffix: str) -> RawSurface:
 
 def _called(module: str, arguments: dict[str, AnyArray], size: int) -> RawSurface:
     seconds = math.ceil(_SECONDS + _SECONDS_PER_BYTE * size)
+    memory = _BYTES + _BYTES_PER_BYTE * size
     try:
         found = run_isolated(
             "app.loading.child:read",
             {"module": np.array(module), "seconds": np.array(seconds), **arguments},
             label="its reader",
             seconds=_SLOWNESS * seconds,
-            memory=_BYTES + _BYTES_PER_BYTE * size,
+            memory=memory,
         )
+    except ShortageError:
+        raise BadContentError(
+            f"needs more than {memory >> 30} GiB of memory to read, and has {_large(size)}", _REMEDY
+        ) from None
     except IsolatedError as error:
         if "SIGXCPU" in str(error):
             raise BadContentError(f"its reader took more than {seconds} s") from None
@@ -103,3 +112,7 @@ def _called(module: str, arguments: dict[str, AnyArray], size: int) -> RawSurfac
         found.get("colors"),
         found["warnings"].tolist(),
     )
+
+
+def _large(size: int) -> str:
+    return f"{size / 2**20:.1f} MiB" if size >= 2**20 else f"{size:,} bytes"

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.loading.beside import beside
 from app.loading.errors import BadContentError
-from app.loading.surface import RawTexture
+from app.loading.surface import RawPicture, RawTexture
 from app.loading.text import numbers
 from lutcore.arrays import AnyArray, FloatArray
 
@@ -80,8 +80,12 @@ def texture_of(
         warnings.append(f"its texture coordinates cannot be used: {error.problem}")
         return None
     pictures = [_read(folder, name.encode(), warnings, others) for name in names]
-    images = [(name, data) for name, data in zip(names, pictures, strict=True) if data is not None]
-    number = {name: index for index, (name, _) in enumerate(images)}
+    images = [
+        RawPicture(name, data)
+        for name, data in zip(names, pictures, strict=True)
+        if data is not None
+    ]
+    number = {picture.name: index for index, picture in enumerate(images)}
     of_material = {material: number.get(name, -1) for material, name in maps.items()}
     if not images:
         return None

@@ -4,7 +4,30 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.loading.texture_wrap import REPEAT, Wrap
 from lutcore.arrays import AnyArray, FloatArray
+
+
+@dataclass(frozen=True)
+class RawPicture:
+    """One picture of a texture.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    content : bytes or None
+        Encoded; None for a plain white one.
+    tint : tuple of 3 floats
+        Linear factor on its colours, 0 to 1.
+    wrap : tuple of 2 str
+        How it goes on, across and up; see `app.loading.texture_wrap`.
+    """
+
+    name: str
+    content: bytes | None
+    tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    wrap: tuple[Wrap, Wrap] = (REPEAT, REPEAT)
 
 
 @dataclass
@@ -18,13 +41,13 @@ class RawTexture:
         none.
     which : ndarray of int, shape=(f,)
         Each polygon's picture, -1 for none.
-    images : list of (str, bytes)
-        Name for messages, and encoded picture.
+    images : list of RawPicture
+        The pictures.
     """
 
     corners: FloatArray
     which: AnyArray
-    images: list[tuple[str, bytes]]
+    images: list[RawPicture]
 
 
 @dataclass

@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from app.loading.atlas import joined
 from app.loading.checks import checked
 from app.loading.errors import BadContentError
-from app.loading.surface import RawSurface, RawTexture
+from app.loading.surface import RawPicture, RawSurface, RawTexture
+from app.loading.texture_wrap import REPEAT, Wrap, within
 from lutcore.arrays import AnyArray, FloatArray
 from lutcore.errors import MeshError
 from lutcore.mesh import TriangleMesh
 
 Pixels = NDArray[np.uint8]
 _MOST_PIXELS = 1 << 26  # 8192 x 8192
+_PLAIN = 4  # pixels of what has a colour and no picture
 _MOST_SIDE = 8192  # what every graphics card can hold
 # Repeats beyond which single precision no longer tells pixels apart.
 _FAR = 1e4
@@ -32,15 +34,17 @@ class Texture:
     image : ndarray of uint8, shape=(height, width, 3)
         sRGB, the first row at the top.
     uv : ndarray of float32, shape=(m, 3, 2)
-        Of each triangle's corners: (0, 0) is the picture's lower left, (1, 1) its upper right;
-        beyond, it repeats.
+        Of each triangle's corners: (0, 0) is the picture's lower left, (1, 1) its upper right.
     faces : ndarray of int, shape=(m, 3)
         The mesh's triangles.
+    wrap : tuple of 2 str
+        How the picture goes on beyond, across and up; see `app.loading.texture_wrap`.
     """
 
     image: Pixels
     uv: NDArray[np.float32]
     faces: AnyArray
+    wrap: tuple[Wrap, Wrap] = (REPEAT, REPEAT)
 
     @cached_property
     def seams(self) -> "Seams":
@@ -66,8 +70,9 @@ class Texture:
 
         seams = self.seams
         height, width = self.image.shape[:2]
-        column = np.floor(seams.uv[:, 0].astype(np.float64) * width).astype(np.int64) % width
-        row = np.floor((1.0 - seams.uv[:, 1].astype(np.float64)) * height).astype(np.int64) % height
+        u, v = seams.uv.astype(np.float64).T
+        column = within(np.floor(u * width).astype(np.int64), width, self.wrap[0])
+        row = within(np.floor((1.0 - v) * height).astype(np.int64), height, self.wrap[1])
         linear = srgb_decode(self.image[row, column] / 255.0)
         count = int(self.faces.max()) + 1
         times = np.bincount(seams.vertices, minlength=count)
@@ -130,7 +135,7 @@ def textured(surface: RawSurface, mesh: TriangleMesh) -> Texture | None:
     raw = surface.texture
     if raw is None:
         return None
-    images = [_decoded(name, content, surface.warnings) for name, content in raw.images]
+    images = [_decoded(picture, surface.warnings) for picture in raw.images]
     if all(image is None for image in images):
         return None
     found = _triangles(surface, mesh)
@@ -138,14 +143,15 @@ def textured(surface: RawSurface, mesh: TriangleMesh) -> Texture | None:
         surface.warnings.append(f"its places do not follow the faces: {_NOT_USED}")
         return None
     uv, which = _places(raw, surface, found)
-    made = joined(images, uv, which)
+    made = joined(images, uv, which, [picture.wrap for picture in raw.images])
     if made is None:
         surface.warnings.append(
-            f"several textures of which one repeats within a face: {_NOT_USED}; join them to one"
+            f"several textures of which one goes on beyond its edge within a face: {_NOT_USED}; "
+            "join them to one"
         )
         return None
-    image, uv = made
-    return Texture(image, np.ascontiguousarray(uv, dtype=np.float32), mesh.faces)
+    image, uv, wrap = made
+    return Texture(image, np.ascontiguousarray(uv, dtype=np.float32), mesh.faces, wrap)
 
 
 def _triangles(surface: RawSurface, mesh: TriangleMesh) -> AnyArray | None:
@@ -172,11 +178,14 @@ def _places(raw: RawTexture, surface: RawSurface, corners: AnyArray) -> tuple[Fl
     return np.where(placed[:, None, None], uv, 0.0), np.where(placed, which, -1)
 
 
-def _decoded(name: str, content: bytes, warnings: list[str]) -> Pixels | None:
+def _decoded(picture: RawPicture, warnings: list[str]) -> Pixels | None:
+    name = picture.name
+    if picture.content is None:
+        return _tinted(np.full((_PLAIN, _PLAIN, 3), 255, dtype=np.uint8), picture.tint)
     from PIL import Image
 
     try:
-        with Image.open(io.BytesIO(content)) as image:
+        with Image.open(io.BytesIO(picture.content)) as image:
             width, height = image.size
             if width * height > _MOST_PIXELS:
                 warnings.append(f"{name} has {width} x {height} pixels, too many: {_NOT_USED}")
@@ -185,8 +194,19 @@ def _decoded(name: str, content: bytes, warnings: list[str]) -> Pixels | None:
             if max(rgb.size) > _MOST_SIDE:
                 rgb.thumbnail((_MOST_SIDE, _MOST_SIDE))
                 warnings.append(f"{name} is drawn with {rgb.width} x {rgb.height} pixels")
-            return np.array(rgb)
+            return _tinted(np.array(rgb), picture.tint)
     # Decoders of damaged pictures raise whatever comes up in them.
     except Exception as error:
         warnings.append(f"{name} cannot be read as a picture ({error!s:.80}): {_NOT_USED}")
         return None
+
+
+def _tinted(image: Pixels, tint: tuple[float, float, float]) -> Pixels:
+    """Multiply linear colours, all 256 of each channel at once."""
+    if tint == (1.0, 1.0, 1.0):
+        return image
+    from lutcore.color import srgb_decode, srgb_encode
+
+    linear = srgb_decode(np.arange(256.0)[:, None] / 255.0) * np.array(tint)
+    shown = np.rint(255.0 * srgb_encode(linear)).astype(np.uint8)
+    return np.stack([shown[image[..., c], c] for c in range(3)], axis=-1)

@@ -34,8 +34,7 @@ float glowBend(vec3 n, vec3 form, vec3 w) {
 }
 """
 _TRANSMITTANCE = """
-float glowEntering(float c) {
-  float n = glowEta[0];
+float glowEntering(float c, float n) {
   float inside = sqrt(max(1.0 - (1.0 - c * c) / (n * n), 0.0));
   float crossing = (c - n * inside) / (c + n * inside + 1e-20);
   float parallel = (n * c - inside) / (n * c + inside + 1e-20);
@@ -57,7 +56,7 @@ float glowOf(float a, float bend, int c) {{
 """
 # IEC 61966-2-1, as in lutcore.color, its power as a polynomial in the fourth root: within .01/255.
 _SEEN = """
-glowShone = clamp(glowExposure * glowEntering(abs({seen})) * {kept} * glowShone, 0.0, 1.0);
+glowShone = clamp(glowExposure * vec3({entering}) * {kept} * glowShone, 0.0, 1.0);
 vec3 glowRoot = sqrt(glowShone), glowFourth = sqrt(glowRoot);
 vec3 glowPower = -0.06461153 + 0.19613584 * glowFourth
   + glowRoot * (1.12268167 - 0.3355016 * glowFourth + 0.08132999 * glowRoot);
@@ -135,7 +134,11 @@ if (glowEye[3] > 0.0) glowView = normalize(glowView - vertexMC.xyz);
         kept = "vec3(glowTotal[0], glowTotal[1], glowTotal[2])"
         if "kept" in self._passed:
             kept = self._passed.taken("kept")
-        return code + _SEEN.format(seen=self._passed.taken("seen"), kept=kept)
+        # The constructor of a vector takes one number for all three.
+        indices = range(3 if len(set(self._look.numbers["glowEta"])) > 1 else 1)
+        seen = self._passed.taken("seen")
+        entering = ", ".join(f"glowEntering(abs({seen}), glowEta[{c}])" for c in indices)
+        return code + _SEEN.format(entering=entering, kept=kept)
 
     def _bend(self, channel: int, light: int) -> str:
         given = self._look.parts
@@ -169,7 +172,10 @@ if (glowEye[3] > 0.0) glowView = normalize(glowView - vertexMC.xyz);
     def _entering(self, cosines: list[str]) -> str:
         if not self._look.directional:
             return ""
-        return f" * {_joined([f'glowEntering(max({one}, 0.0))' for one in cosines])}"
+        if len(set(self._look.numbers["glowEta"])) > 1:
+            cosines = [cosines[min(c, len(cosines) - 1)] for c in range(3)]
+        entered = [f"glowEntering(max({a}, 0.0), glowEta[{c}])" for c, a in enumerate(cosines)]
+        return f" * {_joined(entered)}"
 
     @staticmethod
     def _vector(light: int, field: int) -> str:

@@ -142,7 +142,7 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
     MeshError, ParameterError
         If the mesh or a parameter does not allow it.
     """
-    from lutcore.fresnel import hinges
+    from lutcore.fresnel import hinges_of
     from plugins.shading.curvature_lut import CurvatureLut
 
     model = pipeline.settled(session, session.model, axes)
@@ -174,21 +174,20 @@ def look_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> PixelLook
         parts,
         rows(parts, list(vectors.values())),
         {
-            "glowEta": (table.eta,),
+            "glowEta": tuple(table.eta),
             "glowTotal": tuple(total),
             "glowLength": tuple(table.mean_free_path),
             "glowHalfway": tuple(halfway(table) / np.sqrt(table.mean_free_path)),
         },
-        None if bent is None else response(table, hinges(table.eta, bent.hinges)),
+        None if bent is None else response(table, *hinges_of(table.eta, bent.hinges)),
     )
 
 
 def _total(model: "ShadingModel", table: "PsiTable") -> FloatArray:
-    from lutcore.fresnel import mean_transmittance
     from plugins.shading.lambert import Lambert
 
     mean = isinstance(model, Lambert) and model.fresnel == "mean"
-    return table.total * mean_transmittance(table.eta) if mean else table.total
+    return table.total * table.entering if mean else table.total
 
 
 def packed(session: Session, camera: Camera) -> FloatArray:

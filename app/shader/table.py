@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from lutcore.fresnel import Hinges
     from lutcore.lut import PsiTable
 
 SingleArray = NDArray[np.float32]
@@ -43,15 +42,15 @@ def halfway(table: "PsiTable") -> FloatArray:
     return _MIDDLE / np.sqrt(table.psi[:, 0])
 
 
-def response(table: "PsiTable", fit: "Hinges") -> SingleArray:
+def response(table: "PsiTable", corners: FloatArray, weights: FloatArray) -> SingleArray:
     """Return sum_j w_j p(a - c_j, b) / R_d for all cosines a and bends b.
 
     Parameters
     ----------
     table : PsiTable
         Of the material.
-    fit : Hinges
-        What F_t(a) a is replaced by.
+    corners, weights : ndarray, shape=(3, J)
+        Hinges that F_t(a) a of each channel is replaced by; see `lutcore.fresnel.hinges_of`.
 
     Returns
     -------
@@ -61,11 +60,11 @@ def response(table: "PsiTable", fit: "Hinges") -> SingleArray:
         are equally wide in a/(BEND + abs a), rows in sqrt(b)/(`halfway` + sqrt(b)): dense where
         there is little bend and edges of light are sharp.
     """
-    cells = [_cells(table, fit, channel) for channel in range(3)]
+    cells = [_cells(table, corners[channel], weights[channel], channel) for channel in range(3)]
     return np.concatenate(cells).astype(np.float32)
 
 
-def _cells(table: "PsiTable", fit: "Hinges", channel: int) -> FloatArray:
+def _cells(table: "PsiTable", corners: FloatArray, weights: FloatArray, channel: int) -> FloatArray:
     from lutcore.lut import even_forms
 
     end = MOST / (BEND + MOST)
@@ -76,7 +75,7 @@ def _cells(table: "PsiTable", fit: "Hinges", channel: int) -> FloatArray:
     found = np.empty((len(bends), len(cosine)))
     for row, bend in enumerate(bends):
         kappa = np.full(len(cosine), bend)
-        arguments = (fit.weights, fit.corners, cosine, kappa, 1.0)
+        arguments = (weights, corners, cosine, kappa, 1.0)
         found[row] = even_forms(*arguments, table.rows, table.inverse_step, channel)
     found /= 1.0 + bends[:, None]
     knots, middle = found[::2, ::2], found[1::2, 1::2]

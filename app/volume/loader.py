@@ -13,7 +13,7 @@ from app.session import Volume
 from app.volume.source import Source
 from lutcore.arrays import AnyArray
 from lutcore.errors import MeshError
-from lutcore.isolated import IsolatedError, run_isolated
+from lutcore.isolated import IsolatedError, ShortageError, run_isolated
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, silent
 
@@ -92,6 +92,11 @@ def _extracted(source: Source, volume: Volume, progress: Progress) -> dict[str, 
             memory=_LIBRARIES + memory,
             progress=progress,
         )
+    except ShortageError as error:
+        raise BadContentError(
+            f"needs more than {error.memory >> 30} GiB of memory to read",
+            "crop it, export it with larger voxels, or read it where there is more memory",
+        ) from None
     except IsolatedError as error:
         raise BadContentError(
             str(error), "it is damaged, or too large for this machine: crop it or export it again"

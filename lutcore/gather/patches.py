@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
-from lutcore.fresnel import compiled_transmittance
+from lutcore.fresnel import transmittances
 from lutcore.lights import light_at
 from lutcore.shading import ShadingInputs
 
@@ -40,7 +40,7 @@ class _Surface(NamedTuple):
     faces: IndexArray
     lights: FloatArray
     visible: FloatArray
-    eta: float
+    eta: FloatArray
 
 
 def patches(inputs: ShadingInputs) -> Patches:
@@ -64,9 +64,8 @@ def patches(inputs: ShadingInputs) -> Patches:
     if inputs.visibility is not None:
         visible = np.empty((*inputs.visibility.shape[:2], 3))
         visible[:] = np.atleast_3d(inputs.visibility)
-    on = _Surface(
-        inputs.points, inputs.normals, inputs.faces, inputs.lights, visible, inputs.material.eta
-    )
+    eta = np.array(inputs.material.eta)
+    on = _Surface(inputs.points, inputs.normals, inputs.faces, inputs.lights, visible, eta)
     light = _at_vertices(on)
     limit = _DEVIATION * light.sum(axis=0) / np.maximum(np.count_nonzero(light, axis=0), 1)
     whole, count = _count(on, limit, light)
@@ -95,14 +94,16 @@ def _entering(on: _Surface, face: int, u: float, v: float) -> tuple[float, float
         cosine = min((nx * x + ny * y + nz * z) * inverse, 1.0)
         if cosine <= 0.0:
             continue
-        factor *= cosine * compiled_transmittance(cosine, on.eta)
+        let_in = transmittances(cosine, on.eta)
         reds, greens, blues = on.lights[light, 8], on.lights[light, 9], on.lights[light, 10]
         if on.visible.shape[1] > 1:
             share = on.visible[light]
             reds *= w * share[a, 0] + u * share[b, 0] + v * share[c, 0]
             greens *= w * share[a, 1] + u * share[b, 1] + v * share[c, 1]
             blues *= w * share[a, 2] + u * share[b, 2] + v * share[c, 2]
-        red, green, blue = red + factor * reds, green + factor * greens, blue + factor * blues
+        red += factor * (cosine * let_in[0]) * reds
+        green += factor * (cosine * let_in[1]) * greens
+        blue += factor * (cosine * let_in[2]) * blues
     return red, green, blue
 
 
@@ -130,11 +131,13 @@ def _at_vertices(on: _Surface) -> FloatArray:
             if cosine <= 0.0:
                 continue
             cosine = min(cosine, 1.0)
-            factor *= cosine * compiled_transmittance(cosine, on.eta)
+            let_in = transmittances(cosine, on.eta)
             vertex = min(np.int64(i), on.visible.shape[1] - 1)
             for channel in range(3):
                 share = on.visible[one, vertex, channel]
-                light[i, channel] += factor * share * on.lights[one, 8 + channel]
+                light[i, channel] += (
+                    factor * (cosine * let_in[channel]) * share * on.lights[one, 8 + channel]
+                )
     return light
 
 

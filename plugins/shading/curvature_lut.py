@@ -10,7 +10,7 @@ from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.detail import Detail
-from lutcore.fresnel import hinges
+from lutcore.fresnel import hinges_of
 from lutcore.lights import is_directional, light_at
 from lutcore.lut import BLOCK, PsiTable, even_forms
 from lutcore.parameters import choice, param
@@ -56,14 +56,14 @@ class CurvatureLut(ShadingModel):
 
     def _shade(self, inputs: ShadingInputs, normals: FloatArray, shape: FloatArray) -> FloatArray:
         table = inputs.baked(self.samples)
-        fit = hinges(table.eta, self.hinges)
+        fit = hinges_of(table.eta, self.hinges)
         arguments = (inputs.points, normals, shape, inputs.lights)
-        return _exitance(*arguments, fit.corners, fit.weights, *_constants(table, self.area))
+        return _exitance(*arguments, *fit, *_constants(table, self.area))
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
-        fit = hinges(scene.table.eta, self.hinges)
-        flat = np.maximum(0.0, COSINES[:, None] - fit.corners) @ fit.weights
+        fits = zip(*hinges_of(scene.table.eta, self.hinges), strict=True)
+        flat = np.stack([np.maximum(0.0, COSINES[:, None] - c) @ w for c, w in fits])
         return scene.error_of(Knowledge(flat, second=float(self.area == "flat")))
 
     @classmethod
@@ -118,7 +118,7 @@ def _exitance(
                             )
                         cosine[k] = facing[i, 0] * x + facing[i, 1] * y + facing[i, 2] * z
                         kappa[k] = bending(bent, i, x, y, z)
-                glow = even_forms(weights, corners, cosine, kappa, length[c], rows, steps, c)
+                glow = even_forms(weights[c], corners[c], cosine, kappa, length[c], rows, steps, c)
                 for k in range(count):
                     out[first + k, c] += lights[light, 8 + c] * strength[k] * glow[k]
         for c in range(3):

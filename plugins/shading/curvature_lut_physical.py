@@ -13,7 +13,7 @@ from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.diffusion import Optics, optics
 from lutcore.entering import bulging, entry_cosines, entry_factors
-from lutcore.fresnel import hinges
+from lutcore.fresnel import hinges_of
 from lutcore.halfspace import flat_albedo
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
@@ -67,7 +67,7 @@ class CurvatureLutPhysical(ShadingModel):
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.baked(self.samples)
-        fit = hinges(table.eta, self.hinges)
+        corners, weights = hinges_of(table.eta, self.hinges)
         channels = optics(inputs.material)
         inverse = np.stack([_inverse_albedo(channel) for channel in channels])
         # As for the glow: with less absorption than the floor the two factors cancel.
@@ -78,8 +78,8 @@ class CurvatureLutPhysical(ShadingModel):
             inputs.normals,
             inputs.shape,
             inputs.lights,
-            fit.corners,
-            fit.weights,
+            corners,
+            weights,
             inverse,
             beta,
             table.eta,
@@ -146,7 +146,7 @@ def _exitance(
     weights: FloatArray,
     inverse: FloatArray,
     beta: FloatArray,
-    eta: float,
+    eta: FloatArray,
     area: FloatArray,
     length: FloatArray,
     rows: FloatArray,
@@ -175,12 +175,12 @@ def _exitance(
             for c in range(3):
                 if lights[light, 8 + c] == 0.0:
                     continue
-                entry = entry_cosines(cosine, kappa, bulge, squares, beta[c], eta, length[c])
+                entry = entry_cosines(cosine, kappa, bulge, squares, beta[c], eta[c], length[c])
                 factor = entry_factors(
-                    entry, bulge, trace, squares, lost[c], beta[c], eta, length[c]
+                    entry, bulge, trace, squares, lost[c], beta[c], eta[c], length[c]
                 )
                 bend = np.sqrt(wide[c]) * kappa
-                glow = even_forms(weights, corners, entry, bend, length[c], rows, steps, c)
+                glow = even_forms(weights[c], corners[c], entry, bend, length[c], rows, steps, c)
                 for k in range(count):
                     rgb = lights[light, 8 + c] * strength[k]
                     out[first + k, c] += rgb * factor[k] * glow[k]

@@ -9,7 +9,6 @@ from lutcore.arrays import FloatArray
 from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending
-from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.lut import BLOCK, even_forms
 from lutcore.prediction import Knowledge, Scene
@@ -43,7 +42,7 @@ class Kolchin2007(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.baked(self.samples)
         arguments = (inputs.points, inputs.normals, inputs.shape, inputs.lights)
-        total = table.total * mean_transmittance(table.eta)
+        total = table.total * table.entering
         return _exitance(*arguments, total, table.mean_free_path, table.rows, table.inverse_step)
 
     def predicted_error(self, scene: Scene) -> FloatArray:

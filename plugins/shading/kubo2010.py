@@ -8,7 +8,6 @@ import numpy as np
 from lutcore.arrays import FloatArray
 from lutcore.bent import BentTable, bent_exitance, tabulate_bends
 from lutcore.blur import blurred
-from lutcore.fresnel import mean_transmittance
 from lutcore.prediction import Knowledge, Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
@@ -45,7 +44,7 @@ class Kubo2010(ShadingModel):
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.table
-        total = table.total * mean_transmittance(table.eta)
+        total = table.total * table.entering
         sigma_0 = table.mean_free_path * np.sqrt(0.5 * table.mean_square)
         return bent_exitance(inputs, (gaussian_table(),) * 3, total, sigma_0)
 

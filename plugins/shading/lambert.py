@@ -7,7 +7,7 @@ from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
-from lutcore.fresnel import compiled_transmittance, mean_transmittance
+from lutcore.fresnel import compiled_transmittance
 from lutcore.lights import light_at
 from lutcore.parameters import choice
 from lutcore.prediction import Knowledge, Scene
@@ -33,7 +33,7 @@ class Lambert(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.table
         directional = self.fresnel == "directional"
-        total = table.total if directional else table.total * mean_transmittance(table.eta)
+        total = table.total if directional else table.total * table.entering
         arguments = (inputs.points, inputs.normals, inputs.lights, total)
         return _lambert(*arguments, table.eta, directional)
 
@@ -54,7 +54,7 @@ def _lambert(
     normals: FloatArray,
     lights: FloatArray,
     total: FloatArray,
-    eta: float,
+    eta: FloatArray,
     directional: bool,
 ) -> FloatArray:
     out = np.zeros((len(points), 3))
@@ -64,7 +64,13 @@ def _lambert(
             cosine = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
             factor = strength * max(cosine, 0.0)
             if directional:
-                factor *= compiled_transmittance(max(cosine, 0.0), eta)
-            for channel in range(3):
-                out[i, channel] += lights[light, 8 + channel] * total[channel] * factor
+                entering = factor
+                for channel in range(3):
+                    # Most materials have one index: then its root is taken once.
+                    if channel == 0 or eta[channel] != eta[channel - 1]:
+                        entering = factor * compiled_transmittance(max(cosine, 0.0), eta[channel])
+                    out[i, channel] += lights[light, 8 + channel] * total[channel] * entering
+            else:
+                for channel in range(3):
+                    out[i, channel] += lights[light, 8 + channel] * total[channel] * factor
     return out

@@ -70,7 +70,7 @@ def _exitance(
     lights: FloatArray,
     total: FloatArray,
     length: FloatArray,
-    eta: float,
+    eta: FloatArray,
     round_: FloatArray,
     round_scale: FloatArray,
     round_limit: float,
@@ -99,7 +99,7 @@ def _exitance(
                         continue
                     s = min(length[c] * curvature, LIMIT)
                     e = reach * (s / (curvature + 1e-300))
-                    value = round_at(a, e, round_[c], round_scale[c], round_limit, eta)
+                    value = round_at(a, e, round_[c], round_scale[c], round_limit, eta[c])
                     value += terms_at(a, s, terms[c], scale[c], powers)
                     out[i, c] += lights[light, 8 + c] * strength * total[c] * max(value, 0.0)
     return out

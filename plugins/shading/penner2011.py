@@ -10,7 +10,6 @@ from lutcore.baking import glowing
 from lutcore.bent import BentTable, bent_exitance, tabulate_bends
 from lutcore.blur import blurred
 from lutcore.diffusion import DiffusionProfile, Optics, optics
-from lutcore.fresnel import mean_transmittance
 from lutcore.prediction import Knowledge, Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
@@ -46,7 +45,7 @@ class Penner2011(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         red, green, blue = (ring_table(glowing(c), inputs.profile) for c in optics(inputs.material))
         table = inputs.table
-        total = table.total * mean_transmittance(table.eta)
+        total = table.total * table.entering
         return bent_exitance(inputs, (red, green, blue), total, table.mean_free_path)
 
     def predicted_error(self, scene: Scene) -> FloatArray:

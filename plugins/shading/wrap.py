@@ -7,7 +7,6 @@ from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
-from lutcore.fresnel import mean_transmittance
 from lutcore.lights import light_at
 from lutcore.parameters import param
 from lutcore.prediction import COSINES, Knowledge, Scene
@@ -33,13 +32,13 @@ class Wrap(ShadingModel):
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.table
-        total = table.total * mean_transmittance(table.eta)
+        total = table.total * table.entering
         return _wrap(inputs.points, inputs.normals, inputs.lights, total, self.width)
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
         wrapped = np.maximum(0.0, (COSINES + self.width) / (1.0 + self.width))
-        flat = mean_transmittance(scene.table.eta) * wrapped
+        flat = scene.table.entering[:, None] * wrapped
         return scene.error_of(Knowledge(flat, bend="none"))
 
 

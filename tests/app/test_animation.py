@@ -62,7 +62,7 @@ def test_a_turntable_turns_the_object_under_still_lights(pipeline):
 
 def test_a_ball_on_a_turntable_looks_the_same_from_all_sides(pipeline):
     scene = stage(replace(TORUS, mesh="sample:sphere"), pipeline, Motion("turntable", 1.0, 5.0))
-    drawn = [image.astype(int) for image in frames(scene, pipeline)]
+    drawn = [one.image.astype(int) for one in frames(scene, pipeline)]
     for other in drawn[1:]:
         apart = np.abs(drawn[0] - other)
         # Its triangles lie otherwise in each frame, above all at its outline.
@@ -72,7 +72,7 @@ def test_a_ball_on_a_turntable_looks_the_same_from_all_sides(pipeline):
 
 def test_a_light_sweep_moves_the_lights_and_nothing_else(pipeline):
     scene = stage(TORUS, pipeline, Motion("light-sweep", 1.0, 4.0))
-    drawn = list(frames(scene, pipeline))
+    drawn = [one.image for one in frames(scene, pipeline)]
     shapes = [seen(image) for image in drawn]
     for shape, image in zip(shapes[1:], drawn[1:], strict=True):
         assert (shape == shapes[0]).mean() > 0.999
@@ -84,8 +84,8 @@ def test_a_light_sweep_moves_the_lights_and_nothing_else(pipeline):
 @pytest.mark.parametrize("camera", ["front", "oblique"])
 def test_the_object_stays_in_the_picture_as_it_turns(camera, pipeline):
     session = replace(TORUS, mesh="sample:ellipsoid", camera=camera)
-    for image in frames(stage(session, pipeline, Motion("turntable", 1.0, 6.0)), pipeline):
-        shape = seen(image)
+    for one in frames(stage(session, pipeline, Motion("turntable", 1.0, 6.0)), pipeline):
+        shape = seen(one.image)
         border = np.concatenate([shape[0], shape[-1], shape[:, 0], shape[:, -1]])
         assert not border.any()
         assert shape.mean() > 0.1

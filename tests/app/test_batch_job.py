@@ -1,5 +1,6 @@
 """What a job says: names, order of precedence, messages. Nothing is drawn."""
 
+import argparse
 from textwrap import dedent
 
 import msgspec
@@ -8,9 +9,13 @@ import pytest
 from app.batch.job_file import JobError, read
 from app.batch.plan import planned
 from app.batch.template import filled
+from app.cli import batch, compare, curvature, figure, shade
 from app.cli.batch import _EXAMPLE
+from app.cli.batch_job import job_from
 from app.cli.main import main
-from app.session import Session, write
+from app.cli.options.mesh import add_mesh
+from app.cli.performing import add_performing
+from app.session import Method, Session, Volume, write
 from lutcore.errors import ParameterError
 
 VALUES = {"stem": "bust", "n": 7, "model": "lambert", "material": "skin1", "output": "shade"}
@@ -115,6 +120,59 @@ def test_the_job_of_the_help_text_is_one(folder):
 def test_flags_stand_above_the_job(folder):
     text = 'meshes = "c.ply"\noutputs = ["shade"]\n[[blocks]]\nmatch = "*"\nexposure = 5.0\n'
     assert works_of(folder, text, {"exposure": 7.0})["c-shade.png"].session.exposure == 7.0
+
+
+def said_by_flags(*words):
+    parser = argparse.ArgumentParser()
+    batch.add_arguments(parser, list(words))
+    return job_from(parser.parse_args([*words, "-o", "out"]))
+
+
+def flags_of(add, *arguments):
+    parser = argparse.ArgumentParser()
+    add(parser, *arguments)
+    return {flag for action in parser._actions for flag in action.option_strings}
+
+
+def test_a_batch_has_the_flags_of_the_commands_that_it_runs():
+    shared = {"-h", "--help", "-o", "--output"}
+    own = flags_of(batch.add_arguments, [])
+    for command in (shade, curvature, compare, figure):
+        # What makes a picture; not where it goes, whether it moves, or what it is compared with.
+        makes = flags_of(command.add_arguments, [])
+        about_one = flags_of(add_mesh) | flags_of(add_performing, argparse.Action([], "output"))
+        missing = makes - own - about_one - shared
+        assert not missing, command
+    assert {"--level", "--smoothing", "--by", "--wipe", "--repair"} <= own
+
+
+def test_comparisons_and_volumes_are_said_by_flags(folder):
+    job, overrides = said_by_flags(
+        str(folder / "c.ply"),
+        *("--outputs", "compare", "--models", "skin1,marble", "--by", "material"),
+        *("--wipe", ".3", "--difference", "--level", "7.5", "--smoothing", "2"),
+    )
+    ((work,),) = (item.works for item in planned(job, overrides)[0])
+    assert work.session.compared == (Method("skin1"), Method("marble"))
+    assert (work.session.compared_by, work.session.wipe) == ("material", 0.3)
+    assert work.session.difference and work.session.volume == Volume(7.5, 2.0)
+    with pytest.raises(ParameterError, match="wipe"):
+        said_by_flags(str(folder / "c.ply"), "--wipe", "3")
+
+
+def test_a_flag_that_says_the_default_stands_above_the_job_too(folder):
+    path = folder / "job.toml"
+    path.write_text(
+        'meshes = "c.ply"\noutputs = ["shade"]\n[defaults]\nmaterial = "marble"\nscale = 2.0\n'
+        'shadows = "on"\nmodel.name = "lambert"\n[defaults.volume]\nlevel = 3.0\n'
+    )
+    plain = planned(*said_by_flags(str(path)))[0][0].works[0].session
+    assert (plain.material, plain.scale, plain.shadows) == ("marble", 2.0, "on")
+    words = ("--material", "skin1", "--scale", "auto", "--shadows", "off", "--level", "otsu")
+    flagged = planned(*said_by_flags(str(path), *words, "--model", "curvature-lut"))[0][0]
+    session = flagged.works[0].session
+    assert (session.material, session.scale, session.shadows) == ("skin1", None, "off")
+    assert (session.model, session.volume.level) == (Method("curvature-lut"), None)
 
 
 def test_blocks_choose_outputs_and_limits(folder):

@@ -110,7 +110,7 @@ def test_what_kills_or_hangs_a_reader_or_eats_the_memory_would_be_seen(tmp_path,
 
     def reader(body):
         monkeypatch.setitem(robustness_child._READERS, "rude", ("app", body))
-        return robustness_child.in_fork("rude", str(tmp_path), 0.3)["outcome"]
+        return robustness_child.Workers("rude").read(str(tmp_path), 0.3)["outcome"]
 
     def greedy(path):
         raise MemoryError

@@ -125,9 +125,9 @@ def test_a_pixel_is_what_the_formulas_say(tmp_path, pipeline):
     pixel = render(session, pipeline).image[57, 80]
     skin = material("skin1")
     reflectance = bake(skin).total
-    exit_factor = transmittance(10.0 / np.sqrt(1000.0), skin.eta)
+    exit_factor = transmittance(10.0 / np.sqrt(1000.0), skin.eta[0])
     albedo = ((128.0 / 255.0 + 0.055) / 1.055) ** 2.4
-    light = 2.0 * 0.8 * reflectance * mean_transmittance(skin.eta) * exit_factor * albedo
+    light = 2.0 * 0.8 * reflectance * mean_transmittance(skin.eta[0]) * exit_factor * albedo
     expected = 255.0 * (1.055 * light ** (1.0 / 2.4) - 0.055)
     np.testing.assert_allclose(pixel, expected, atol=1.0)
 

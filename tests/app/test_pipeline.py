@@ -122,7 +122,7 @@ def test_the_glow_is_that_of_the_profile():
 
 def test_a_material_may_be_given_by_its_coefficients():
     wax = Substance("wax", (1.0, 1.0, 1.0), (0.01, 0.02, 0.03), 1.4)
-    assert Pipeline().material(changed(material=wax)).eta == 1.4
+    assert Pipeline().material(changed(material=wax)).eta == (1.4, 1.4, 1.4)
     with pytest.raises(ParameterError, match="material"):
         Pipeline().material(changed(material="granite"))
 

@@ -96,6 +96,20 @@ def test_a_missing_session_file_is_named(tmp_path):
         read(tmp_path / "gone.json")
 
 
+def test_an_index_for_each_channel_comes_back_and_three_that_are_equal_are_one():
+    wax = Substance("wax", (1.0, 2.0, 3.0), (0.0, 0.1, 0.2), (1.2, 1.3, 1.4))
+    session = replaced(FULL, material=wax)
+    assert from_json(to_json(session)) == session
+    said = msgspec.json.decode(to_json(FULL))
+    said["material"]["eta"] = [1.4, 1.4, 1.4]
+    assert from_json(msgspec.json.encode(said)) == FULL
+    assert to_json(from_json(msgspec.json.encode(said))) == to_json(FULL)
+    for wrong in ([1.2, 1.3], [1.2, 1.3, 3.5], 0.9, "glass"):
+        said["material"]["eta"] = wrong
+        with pytest.raises(SessionError, match="eta"):
+            from_json(msgspec.json.encode(said), "session.json")
+
+
 def test_replacing_checks_values_and_leaves_what_is_not_said():
     assert replaced(FULL, exposure=None, scale=2.0).exposure == 1.5
     with pytest.raises(ParameterError, match="mm_per_unit"):

@@ -10,7 +10,7 @@ from app.offscreen import offscreen_window
 from app.picture import compose
 from app.pipeline import Pipeline
 from app.render import fill, grab
-from app.session import Camera, Cone, Directional, Method, Point, Session
+from app.session import Camera, Cone, Directional, Method, Point, Session, Substance
 from app.shader.drawing import PixelLight
 from app.shader.look import MOST_LIGHTS, look_of, unsupported
 from app.shader.table import BEND, COLUMNS, MOST, ROWS, halfway, response
@@ -18,7 +18,7 @@ from app.shader.vertices import forms
 from lutcore.baking import bake
 from lutcore.color import srgb_encode
 from lutcore.convexity import bending, convex_part
-from lutcore.fresnel import hinges
+from lutcore.fresnel import hinges_of
 from lutcore.lut import even_forms
 from lutcore.materials import materials
 
@@ -28,6 +28,7 @@ LIGHTS = (
     Cone((4.0, -4.0, 5.0), (-0.5, 0.5, -0.6), (5.0, 9.0, 5.0), 80.0),
 )
 PARALLEL = Camera((1.0, -2.0, 12.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), height=9.0)
+PRISM = Substance("prism", (0.74, 0.88, 1.01), (0.032, 0.17, 0.48), (1.1, 1.3, 1.7))
 CASES = {
     "detail by channel": {},
     "one scale": {"scale": 0.3, "lights": LIGHTS},
@@ -35,6 +36,13 @@ CASES = {
     "flat area": {"scale": 0.3, "model": Method("curvature-lut", {"hinges": 7.0, "area": "flat"})},
     "eight lights": {"scale": 0.3, "lights": (*LIGHTS, *LIGHTS, *LIGHTS[:2])},
     "no light": {"scale": 0.3, "lights": (), "exposure": 1.0},
+    "an index for each channel": {"scale": 0.3, "material": PRISM, "lights": LIGHTS},
+    "an index for each channel, lambert": {
+        "model": Method("lambert", {"fresnel": "directional"}),
+        "scale": 0.3,
+        "material": PRISM,
+        "lights": LIGHTS[:1],
+    },
     "lambert": {"model": Method("lambert"), "lights": LIGHTS[:1]},
     "lambert, directional": {
         "model": Method("lambert", {"fresnel": "directional"}),
@@ -216,11 +224,11 @@ def test_one_look_up_is_the_response_of_every_material(profile, count) -> None:
     b = 10.0 ** rng.uniform(-5, 1.5, len(a))
     for material in materials():
         table = bake(material, profile=profile)
-        fit = hinges(table.eta, count)
-        cells, span = response(table, fit), halfway(table)
+        corners, weights = hinges_of(table.eta, count)
+        cells, span = response(table, corners, weights), halfway(table)
         for channel in range(3):
             arguments = (table.rows, table.inverse_step, channel)
-            exact = even_forms(fit.weights, fit.corners, a, b, 1.0, *arguments)
+            exact = even_forms(weights[channel], corners[channel], a, b, 1.0, *arguments)
             seen = _looked_up(cells, span[channel], a, b, channel)
             # The least area that the model divides by: of a cylinder.
             area = 1.0 + 3.0 / 16.0 * table.mean_square[channel] * b * b

@@ -10,6 +10,7 @@ from PIL import Image
 
 from app.loading import load_mesh
 from app.loading.atlas import joined
+from app.loading.texture_wrap import CLAMP, MIRROR, REPEAT, within
 from app.picture import render
 from app.pipeline import Pipeline
 from app.session import Camera, Directional, Session
@@ -17,6 +18,7 @@ from app.session import Camera, Directional, Session
 RED, GREEN, BLUE, WHITE = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)
 # Lower left red, lower right green, upper left blue, upper right white.
 QUARTERS = np.array([[BLUE, WHITE], [RED, GREEN]], dtype=np.uint8).repeat(8, 0).repeat(8, 1)
+REPEATS = (REPEAT, REPEAT)
 POINTS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
 SQUARE = "".join(f"v {x} {y} {z}\n" for x, y, z in POINTS)
 PLACES = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -42,7 +44,7 @@ def obj(tmp_path):
     return write
 
 
-def glb(tmp_path, picture=None, uv=((0, 1), (1, 1), (1, 0), (0, 0))):
+def glb(tmp_path, picture=None, uv=((0, 1), (1, 1), (1, 0), (0, 0)), change=lambda document: None):
     parts = [
         np.array(POINTS, "<f4").tobytes(),
         np.array(uv, "<f4").tobytes(),
@@ -76,6 +78,7 @@ def glb(tmp_path, picture=None, uv=((0, 1), (1, 1), (1, 0), (0, 0))):
         "nodes": [{"mesh": 0}],
         "scenes": [{"nodes": [0]}],
     }
+    change(document)
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     path = tmp_path / "square.glb"
@@ -97,7 +100,7 @@ def seen(path, **fields):
         model=fields.pop("model", Session().model),
         camera=Camera((0.5, 0.5, 5.0), (0.5, 0.5, 0.0), height=1.2),
         size=(240, 240),
-        exposure=8.0,
+        exposure=fields.pop("exposure", 8.0),
         scale=1.0,  # the square is smaller than what would be chosen
         **fields,
     )
@@ -180,9 +183,173 @@ def test_two_pictures_lie_side_by_side_and_repeats_do_not():
     images = [np.full((4, 4, 3), 10, np.uint8), np.full((8, 2, 3), 20, np.uint8)]
     uv = np.array([[[0, 0], [1, 0], [0, 1]], [[2, 0], [3, 0], [2, 1]]], dtype=float)
     which = np.array([0, 1])
-    picture, placed = joined(images, uv, which)
+    picture, placed, _ = joined(images, uv, which, [REPEATS] * 2)
     height, width = picture.shape[:2]
     for face, value in enumerate((10, 20)):
         x, y = (placed[face].mean(axis=0) * (width, height)).astype(int)
         assert (picture[height - 1 - y, x] == value).all()
-    assert joined(images, uv * (1.5, 1.0), which) is None
+    assert joined(images, uv * (1.5, 1.0), which, [REPEATS] * 2) is None
+
+
+WEBGL = {REPEAT: 10497, CLAMP: 33071, MIRROR: 33648}
+
+
+def drawn_with(tmp_path, told=None, wrap=None, factor=None):
+    """Return the four quarters of a GLB whose material says more, as names of colours."""
+
+    def change(document):
+        material = document["materials"][0]["pbrMetallicRoughness"]
+        material["baseColorTexture"] |= told or {}
+        if factor is not None:
+            material["baseColorFactor"] = factor
+        if wrap is not None:
+            document["samplers"] = [{"wrapS": WEBGL[wrap[0]], "wrapT": WEBGL[wrap[1]]}]
+            document["textures"][0]["sampler"] = 0
+
+    # Corners on an edge of the picture are of either side.
+    inset = ((0.01, 0.99), (0.99, 0.99), (0.99, 0.01), (0.01, 0.01))
+    path = glb(tmp_path, uv=inset, change=change)
+    assert not load_mesh(path).warnings
+    named = {(True, False, False): "red", (False, True, False): "green"}
+    named |= {(False, False, True): "blue", (True, True, True): "white"}
+    pixels = [tuple(bool(one > 60) for one in pixel) for pixel in seen(path)]
+    # At the vertices the same colours lie.
+    corners = load_mesh(path).texture.at_vertices > 0.5
+    order = (0, 1, 3, 2)  # lower left, lower right, upper left, upper right
+    assert [tuple(map(bool, corners[one])) for one in order] == pixels
+    return " ".join(named[one] for one in pixels)
+
+
+def moved(**how):
+    return {"extensions": {"KHR_texture_transform": how}}
+
+
+@pytest.mark.parametrize(
+    ("how", "found"),
+    [
+        ({}, "red green blue white"),
+        # The lower left quadrant alone; the format counts from the upper left.
+        ({"scale": [0.499, 0.499], "offset": [0.0005, 0.5005]}, "red red red red"),
+        # Coordinates turn counter-clockwise, so the picture turns clockwise.
+        ({"rotation": np.pi / 2, "offset": [0.0, 1.0]}, "green white red blue"),
+        # Scaled first, then turned, then shifted.
+        (
+            {"rotation": np.pi / 2, "scale": [0.499, 0.998], "offset": [0.001, 0.9995]},
+            "green green red red",
+        ),
+        ({"scale": [1.0, -1.0], "offset": [0.0, 1.0]}, "blue white red green"),
+        ({"texCoord": 0}, "red green blue white"),
+    ],
+)
+def test_a_texture_is_moved_as_its_file_says(how, found, tmp_path):
+    told = moved(**how) | ({"texCoord": 5} if "texCoord" in how else {})
+    assert drawn_with(tmp_path, told) == found
+
+
+@pytest.mark.parametrize(
+    ("wrap", "found"),
+    [
+        ((REPEAT, REPEAT), "red green blue white"),
+        ((MIRROR, REPEAT), "green red white blue"),
+        ((REPEAT, MIRROR), "blue white red green"),
+        ((MIRROR, MIRROR), "white blue green red"),
+        ((CLAMP, REPEAT), "green green white white"),
+        ((REPEAT, CLAMP), "red green red green"),
+        ((CLAMP, CLAMP), "green green green green"),
+        ((MIRROR, CLAMP), "green red green red"),
+    ],
+)
+def test_a_texture_goes_on_beyond_its_edges_as_its_file_says(wrap, found, tmp_path):
+    # One picture's width to the right, and one's height down.
+    assert drawn_with(tmp_path, moved(offset=[1.0, 1.0]), wrap) == found
+
+
+def test_a_factor_multiplies_the_linear_colours_of_a_texture(tmp_path):
+    def change(document):
+        document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = [1, 0.5, 0.25, 0.1]
+
+    loaded = load_mesh(glb(tmp_path, change=change))
+    plain = seen(glb(tmp_path), exposure=1.0)
+    # sRGB of .5 and .25, by IEC 61966-2-1.
+    assert loaded.texture.image[0, -1].tolist() == [255, 188, 137]
+    white = seen(glb(tmp_path, change=change), exposure=1.0)[3] / 255.0
+    linear = ((white + 0.055) / 1.055) ** 2.4
+    base = ((plain[3] / 255.0 + 0.055) / 1.055) ** 2.4
+    # Half a byte of the picture, and half a byte of the texture.
+    np.testing.assert_allclose(linear / base, [1.0, 0.5, 0.25], rtol=0.02)
+
+
+def test_a_part_without_a_picture_has_its_factor_beside_one_that_has(tmp_path):
+    def change(document):
+        document["accessors"].append(
+            {"bufferView": 2, "componentType": 5125, "count": 3, "type": "SCALAR"}
+        )
+        document["accessors"].append(
+            {"bufferView": 2, "byteOffset": 12, "componentType": 5125, "count": 3, "type": "SCALAR"}
+        )
+        document["materials"].append({"pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]}})
+        (whole,) = document["meshes"][0]["primitives"]
+        parts = [whole | {"indices": 3}, whole | {"indices": 4, "material": 1}]
+        document["meshes"][0]["primitives"] = parts
+
+    path = glb(tmp_path, change=change)
+    assert not load_mesh(path).warnings
+    _, right, left, _ = seen(path)
+    assert right[1] > 60 > right[0]  # green, of the picture
+    assert left[1] > 60 and left[0] <= 1 and left[2] <= 1  # green, of the factor
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda d: d["textures"][0].update(sampler=0), "texture cannot be used"),
+        (
+            lambda d: d.update(samplers=[{"wrapS": 7}]) or d["textures"][0].update(sampler=0),
+            "wrapS is 7",
+        ),
+        (
+            lambda d: d["materials"][0]["pbrMetallicRoughness"].update(baseColorFactor=[2, 0, 0]),
+            "baseColorFactor",
+        ),
+        (
+            lambda d: d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].update(
+                moved(scale=["a", 1])
+            ),
+            "KHR_texture_transform",
+        ),
+        (
+            lambda d: d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].update(
+                moved(offset=[1e400, 1])
+            ),
+            "KHR_texture_transform",
+        ),
+    ],
+)
+def test_what_a_material_cannot_say_costs_the_texture_alone(change, said, tmp_path):
+    loaded = load_mesh(glb(tmp_path, change=change))
+    assert len(loaded.mesh.faces) == 2 and loaded.texture is None
+    assert any(said in one for one in loaded.warnings), loaded.warnings
+
+
+def test_pixels_beyond_a_picture():
+    pixel = np.arange(-5, 9)
+    assert within(pixel, 4, REPEAT).tolist() == [3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0]
+    assert within(pixel, 4, CLAMP).tolist() == [0] * 6 + [1, 2] + [3] * 6
+    assert within(pixel, 4, MIRROR).tolist() == [3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0]
+
+
+def test_pictures_side_by_side_keep_what_lies_in_one_turn_of_them():
+    ramp = (np.arange(4) * 20).astype(np.uint8)
+    images = [np.broadcast_to(ramp[None, :, None], (4, 4, 3)), np.full((4, 4, 3), 200, np.uint8)]
+    inside = np.array([[[1.1, 0], [1.2, 0], [1.1, 0.1]], [[0, 0], [1, 0], [0, 1]]], dtype=float)
+    which = np.array([0, 1])
+
+    def column(wrap):
+        picture, placed, _ = joined(images, inside, which, [wrap, REPEATS])
+        return picture[-1, int(placed[0, :, 0].mean() * picture.shape[1]), 0]
+
+    assert column(REPEATS) == 0
+    assert column((MIRROR, REPEAT)) == 60
+    assert column((CLAMP, REPEAT)) == 60
+    # A face that crosses an edge has no place beside a neighbour.
+    assert joined(images, inside - (0.15, 0.0), which, [(CLAMP, REPEAT), REPEATS]) is None

@@ -1,8 +1,8 @@
 """Corrupted files: what becomes of them here, in PyVista, trimesh, meshio and PyMeshLab.
 
-``python -m tests.bench.robustness [--files 2000] [--seed N] [--json]``. Every reader gets every
-file in a process of its own, forked from one that has imported the reader, with the same limits of
-time and address space.
+``python -m tests.bench.robustness [--files 2000] [--seed N] [--readers A,B] [--jobs 2]
+[--seconds 20] [--json]``. Every reader gets every file, with the same limits of time and address
+space, in forks of a process that has imported the reader (`tests.bench.robustness_child`).
 """
 
 import argparse
@@ -11,17 +11,19 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections import Counter
+import time
+from collections import Counter, deque
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from tests.corpus.cases import Case, corpus, seed_files
 
-# A file; Curvelight's own guard stops a reader after 10 s of the processor, or 60 s of waiting.
-SECONDS = 70.0
+# A file; Curvelight's own guard stops a reader after 10 s of the processor.
+SECONDS = 20.0
 ADDRESS_SPACE = 6 << 30
 READERS = ("curvelight", "pyvista", "trimesh", "meshio", "pymeshlab")
+_PART = 50  # files that a reader gets in one go
 OUTCOMES = ("mesh", "empty", "refused", "unclear", "garbage", "died", "hung", "memory")
 
 
@@ -38,7 +40,7 @@ class Server:
         )
 
     def read(self, path: Path, seconds: float = SECONDS) -> dict[str, Any]:
-        """Return what became of a file that may take so long; 0: without a fork, far faster."""
+        """Return what became of a file that may take so long; 0: without a fork or a limit."""
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         self.process.stdin.write(f"{seconds} {path}\n".encode())
@@ -55,15 +57,42 @@ class Server:
         self.process.stdout.close()
 
 
-def read_all(reader: str, paths: list[Path]) -> list[dict[str, Any]]:
-    """Return what became of each file, in order."""
-    server = Server(reader)
-    found = [server.read(path) for path in paths]
-    server.stop()
+def read_all(
+    readers: tuple[str, ...], paths: list[Path], jobs: int, seconds: float
+) -> dict[str, list[dict[str, Any]]]:
+    """Return what became of each file with each reader, in order; `jobs` files at once."""
+    found: dict[str, list[dict[str, Any]]] = {reader: [{}] * len(paths) for reader in readers}
+    # Readers in turn, so that all of them get the same company.
+    waiting = deque((reader, first) for first in range(0, len(paths), _PART) for reader in readers)
+    parts = len(waiting)
+
+    def work(_: int) -> None:
+        servers: dict[str, Server] = {}
+        while True:
+            try:
+                reader, first = waiting.popleft()
+            except IndexError:
+                break
+            server = servers.get(reader) or Server(reader)
+            servers[reader] = server
+            for index in range(first, min(first + _PART, len(paths))):
+                found[reader][index] = server.read(paths[index], seconds)
+            print(f"\r{parts - len(waiting)}/{parts} ", end="", file=sys.stderr, flush=True)
+        for server in servers.values():
+            server.stop()
+
+    with ThreadPoolExecutor(jobs) as pool:
+        list(pool.map(work, range(jobs)))
+    print(file=sys.stderr)
     return found
 
 
-def report(cases: list[Case], readers: tuple[str, ...] = READERS) -> dict[str, dict[str, Any]]:
+def report(
+    cases: list[Case],
+    readers: tuple[str, ...] = READERS,
+    jobs: int = 2,
+    seconds: float = SECONDS,
+) -> dict[str, dict[str, Any]]:
     """Return each reader's counts of outcomes, its worst time and memory, and what went wrong."""
     valid = seed_files()
     with tempfile.TemporaryDirectory() as folder:
@@ -74,15 +103,8 @@ def report(cases: list[Case], readers: tuple[str, ...] = READERS) -> dict[str, d
         known = [Path(folder) / f"valid-{name}" for name in valid]
         for path, content in zip(known, valid.values(), strict=True):
             path.write_bytes(content)
-
-        # Ours beside the four peers in turn.
-        def summary(reader: str) -> dict[str, Any]:
-            row = _summary(read_all(reader, known + paths), list(valid), cases)
-            print(f"{reader}: {json.dumps(row)}", file=sys.stderr, flush=True)
-            return row
-
-        with ThreadPoolExecutor(2) as pool:
-            return dict(zip(readers, pool.map(summary, readers), strict=True))
+        found = read_all(readers, known + paths, jobs, seconds)
+    return {reader: _summary(found[reader], list(valid), cases) for reader in readers}
 
 
 def _summary(found: list[dict[str, Any]], valid: list[str], cases: list[Case]) -> dict[str, Any]:
@@ -100,6 +122,7 @@ def _summary(found: list[dict[str, Any]], valid: list[str], cases: list[Case]) -
         "formats": len(reads),
         "files of formats it reads": sum(case.seed_file in reads for case in cases),
         **{outcome: counts[outcome] for outcome in OUTCOMES},
+        "seconds": sum(answer["seconds"] for answer in found),
         "slowest_s": max(answer["seconds"] for answer in rest),
         "peak_mib": max(answer.get("peak_mib", 0.0) for answer in rest),
         "codes": dict(Counter(str(a["code"]) for a in rest if "code" in a)),
@@ -112,21 +135,34 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--files", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--readers", default=",".join(READERS))
+    parser.add_argument("--readers", default=",".join(READERS), help="some of them, with commas")
+    parser.add_argument("--jobs", type=int, default=2, help="files at once")
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="what one file may take")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
+    readers = tuple(options.readers.split(","))
+    unknown = set(readers) - set(READERS)
+    if unknown:
+        parser.error(f"no reader {', '.join(sorted(unknown))}; there are {', '.join(READERS)}")
     cases = list(corpus(options.files, options.seed))
-    found = report(cases, tuple(options.readers.split(",")))
+    began = time.perf_counter()
+    found = report(cases, readers, options.jobs, options.seconds)
+    took = time.perf_counter() - began
     if options.json:
         print(json.dumps(found, indent=2))
         return
-    print(f"{len(cases)} corrupted files, seed {options.seed}, {len(seed_files())} valid ones")
+    print(
+        f"{len(cases)} corrupted files, seed {options.seed}, {len(seed_files())} valid ones; "
+        f"at most {options.seconds:g} s and {ADDRESS_SPACE >> 30} GiB each; {options.jobs} at "
+        f"once, {took:.0f} s in all"
+    )
     names = ("formats", "files of formats it reads", *OUTCOMES)
-    print("| reader | " + " | ".join(names) + " | slowest, s | peak, MiB |")
-    print("|-" * (len(names) + 3) + "|")
+    print("| reader | " + " | ".join(names) + " | all, s | slowest, s | peak, MiB |")
+    print("|-" * (len(names) + 4) + "|")
     for reader, row in found.items():
         cells = " | ".join(str(row[name]) for name in names)
-        print(f"| {reader} | {cells} | {row['slowest_s']:.1f} | {row['peak_mib']:.0f} |")
+        times = f"{row['seconds']:.0f} | {row['slowest_s']:.1f}"
+        print(f"| {reader} | {cells} | {times} | {row['peak_mib']:.0f} |")
     for reader, row in found.items():
         if row["codes"]:
             print(f"{reader}: refusals by exit code {row['codes']}")

@@ -1,10 +1,13 @@
 """What `tests.bench.robustness` starts: one reader, file after file, judged.
 
-A file is a ``mesh`` (finite positions, indices of vertices that exist), ``empty`` (success without
+Files are read in forks of this process, which has imported the reader: many by one fork, as long as
+it lives. What a fork with a past dies of, or has no memory for, is read again by a fresh one. A
+file is a ``mesh`` (finite positions, indices of vertices that exist), ``empty`` (success without
 a face), ``refused``, ``garbage`` (neither finite nor in range, said to be fine) or beyond the
 ``memory``. Ours is ``unclear`` where its error does not name the file and a remedy in one line.
 """
 
+import contextlib
 import json
 import os
 import resource
@@ -20,6 +23,7 @@ import numpy as np
 from tests.bench.robustness import ADDRESS_SPACE
 
 Arrays = tuple[Any, Any]
+_TERM = 60  # files, so that what leaks is not the next ones' lack of memory
 
 
 def _ours(path: str) -> Iterator[Arrays]:
@@ -123,30 +127,113 @@ def _refused(error: BaseException, path: str) -> dict[str, Any]:
     return {"outcome": "refused" if fine else "unclear", "said": said[-300:], "code": code}
 
 
-def in_fork(reader: str, path: str, seconds: float) -> dict[str, Any]:
-    """Read one file in a fork of this process, and return what became of it and what it took."""
-    began = time.perf_counter()
-    from_child, to_parent = os.pipe()
-    child = os.fork()
-    if child == 0:
-        try:
-            os.write(to_parent, json.dumps(judged(reader, path)).encode())
-        finally:
-            os._exit(0)
-    os.close(to_parent)
-    with selectors.DefaultSelector() as waiting:
-        waiting.register(from_child, selectors.EVENT_READ)
-        # Ready, too, when the child is gone and the pipe closed.
-        in_time = bool(waiting.select(seconds))
-    if not in_time:
-        os.kill(child, signal.SIGKILL)
-    said = os.read(from_child, 1 << 16) if in_time else b'{"outcome": "hung"}'
-    os.close(from_child)
-    _, status, used = os.wait4(child, 0)
-    found: dict[str, Any] = json.loads(said) if said else {"outcome": "died", "said": str(status)}
-    found["seconds"] = time.perf_counter() - began
-    found["peak_mib"] = used.ru_maxrss / 1024.0
-    return found
+class Worker:
+    """A fork of this process that reads one file after another."""
+
+    def __init__(self, reader: str) -> None:
+        self.past = 0
+        self._buffer = b""
+        from_us, self._to = os.pipe()
+        self._from, to_us = os.pipe()
+        self._child = os.fork()
+        if self._child == 0:
+            try:
+                os.close(self._to)
+                os.close(self._from)
+                _serve(reader, from_us, to_us)
+            finally:
+                os._exit(0)
+        os.close(from_us)
+        os.close(to_us)
+
+    def read(self, path: str, seconds: float) -> dict[str, Any]:
+        """Return what became of a file; unless ``alive``, the process has ended."""
+        began = time.perf_counter()
+        self.past += 1
+        found: dict[str, Any] = {"outcome": "died"}
+        with contextlib.suppress(OSError):
+            os.write(self._to, path.encode() + b"\n")
+        line = self._line(began + seconds)
+        if line is None:
+            os.kill(self._child, signal.SIGKILL)
+            found = {"outcome": "hung"}
+        elif line:
+            found = json.loads(line) | {"alive": True}
+        if "alive" not in found:
+            _, status, used = os.wait4(self._child, 0)
+            found["peak_mib"] = used.ru_maxrss / 1024.0
+            if found["outcome"] == "died":
+                found["said"] = str(status)
+            self._close()
+        found["seconds"] = time.perf_counter() - began
+        return found
+
+    def _line(self, end: float) -> bytes | None:
+        """Return an answer; empty if the process has gone, None if it took too long."""
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(self._from, selectors.EVENT_READ)
+            while b"\n" not in self._buffer:
+                if not waiting.select(max(0.0, end - time.perf_counter())):
+                    return None
+                chunk = os.read(self._from, 1 << 16)
+                if not chunk:
+                    return b""
+                self._buffer += chunk
+        line, _, self._buffer = self._buffer.partition(b"\n")
+        return line
+
+    def stop(self) -> None:
+        """End the process."""
+        self._close()
+        os.waitpid(self._child, 0)
+
+    def _close(self) -> None:
+        os.close(self._to)
+        os.close(self._from)
+
+
+def _serve(reader: str, lines: int, answers: int) -> None:
+    """Read files by their names until there are none."""
+    for line in os.fdopen(lines):
+        with contextlib.suppress(OSError), open("/proc/self/clear_refs", "w") as peak:
+            peak.write("5")  # the peak begins anew, where the system can do that
+        found = judged(reader, line.rstrip("\n"))
+        os.write(answers, json.dumps(found | {"peak_mib": _peak()}).encode() + b"\n")
+
+
+def _peak() -> float:
+    """Return the largest resident size since it was reset, or of a child of ours, MiB."""
+    kib = 0
+    with contextlib.suppress(OSError), open("/proc/self/status") as status:
+        kib = next(int(line.split()[1]) for line in status if line.startswith("VmHWM:"))
+    return max(kib, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss) / 1024.0
+
+
+class Workers:
+    """Reads files by one fork as long as it lives, and no longer than `_TERM` files."""
+
+    def __init__(self, reader: str) -> None:
+        self._reader = reader
+        self._worker: Worker | None = None
+
+    def read(self, path: str, seconds: float) -> dict[str, Any]:
+        """Return what became of a file."""
+        while True:
+            worker = self._worker or Worker(self._reader)
+            found = worker.read(path, seconds)
+            alive = found.pop("alive", False)
+            spent = alive and (worker.past >= _TERM or found["outcome"] == "memory")
+            if spent:
+                worker.stop()
+            self._worker = worker if alive and not spent else None
+            # Leaks and overwritten memory of the files before are not this file's.
+            if found["outcome"] not in ("died", "memory") or worker.past == 1:
+                return found
+
+    def stop(self) -> None:
+        """End what is running."""
+        if self._worker is not None:
+            self._worker.stop()
 
 
 def main(reader: str) -> None:
@@ -159,12 +246,14 @@ def main(reader: str) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
     __import__(_READERS[reader][0])
+    workers = Workers(reader)
     for line in lines:
         seconds, _, path = line.rstrip("\n").partition(" ")
         limit = float(seconds)
-        found = in_fork(reader, path, limit) if limit else judged(reader, path)
+        found = workers.read(path, limit) if limit else judged(reader, path)
         answers.write(json.dumps(found) + "\n")
         answers.flush()
+    workers.stop()
 
 
 if __name__ == "__main__":

@@ -17,7 +17,6 @@ import numpy as np
 
 from lutcore.baking import BETA_FLOOR, bake, bake_plane
 from lutcore.diffusion import Optics, optics
-from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight
 from lutcore.lut import PsiTable, even_form
 from lutcore.materials import material, materials
@@ -109,7 +108,7 @@ def model_energies(
     """
     shares, truth, shaded = on_sphere(radius_ratio, nodes, name, channel)
     table = bake(name)
-    entering = 0.25 * table.total[channel] * mean_transmittance(table.eta)  # mean of max(N.w, 0)
+    entering = 0.25 * table.total[channel] * table.entering[channel]  # mean of max(N.w, 0)
     shaded["dipole on the sphere"] = truth
     return {label: float(np.sum(shares * value) / entering) for label, value in shaded.items()}
 

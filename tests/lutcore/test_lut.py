@@ -175,7 +175,7 @@ def test_without_absorption_reflectance_is_exact_and_the_glow_that_of_the_floor(
     # beta^2 = 3 sigma_a/(sigma_s' + sigma_a).
     share = BETA_FLOOR**2 / 3.0
     absorption = tuple(s * share / (1.0 - share) for s in like.scattering)
-    at_floor = Material("at the floor", like.scattering, absorption, like.eta)  # type: ignore[arg-type]
+    at_floor = Material("at the floor", like.scattering, absorption, like.eta)
     # 1 - alpha' keeps 11 of 16 digits at the floor.
     np.testing.assert_allclose(table.psi, bake(at_floor).psi, atol=1e-9)
     np.testing.assert_allclose(table.mean_square, bake(at_floor).mean_square, rtol=1e-9)
@@ -184,7 +184,7 @@ def test_without_absorption_reflectance_is_exact_and_the_glow_that_of_the_floor(
 def test_the_floor_reflects_99_per_cent_and_spares_what_absorbs() -> None:
     like = material("spectralon")
     absorption = tuple(s * BETA_FLOOR**2 / 3.0 for s in like.scattering)
-    at_floor = Material("at the floor", like.scattering, absorption, like.eta)  # type: ignore[arg-type]
+    at_floor = Material("at the floor", like.scattering, absorption, like.eta)
     np.testing.assert_allclose(bake(at_floor).total, 0.99, atol=5e-4)
     assert not any(bake(name).floored.any() for name in materials() if name != "spectralon")
 

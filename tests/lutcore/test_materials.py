@@ -8,6 +8,7 @@ import pytest
 
 from lutcore.baking import bake
 from lutcore.errors import ParameterError
+from lutcore.lut import PsiTable
 from lutcore.materials import Material, material, materials
 
 # The diffuse reflectances that Jensen et al. 2001 print beside the coefficients in figure 5.
@@ -66,6 +67,10 @@ def test_an_unknown_name_gets_the_nearest() -> None:
         ("absorption", (0.0, float("inf"), 0.0), "finite"),
         ("eta", 0.9, "range"),
         ("eta", 3.1, "range"),
+        ("eta", (1.3, 1.3, 3.1), "range"),
+        ("eta", (1.3, 0.9, 1.3), "range"),
+        ("eta", (1.3, 1.3), "shape"),
+        ("eta", (1.3, float("nan"), 1.3), "finite"),
     ],
 )
 def test_bad_values_are_refused(field: str, value: object, message: str) -> None:
@@ -86,6 +91,37 @@ def test_scaled_coefficients_scale_lengths() -> None:
 
 def test_equal_materials_are_one_key_whatever_they_were_made_of() -> None:
     skin = material("skin1")
-    twin = Material("skin1", np.array(skin.scattering), list(skin.absorption), 1.3)  # type: ignore[arg-type]
+    twin = Material("skin1", np.array(skin.scattering), list(skin.absorption), 1.3)
     assert twin == skin
     assert hash(twin) == hash(skin)
+
+
+def test_one_index_is_that_of_every_channel() -> None:
+    skin = material("skin1")
+    assert skin.eta == (1.3, 1.3, 1.3)
+    three = dataclasses.replace(skin, eta=(1.2, 1.3, 1.4))
+    assert three.eta == (1.2, 1.3, 1.4) and three != skin
+    assert dataclasses.replace(skin, eta=np.array([1.3, 1.3, 1.3])) == skin
+    assert three.scaled(2.0).eta == three.eta
+
+
+def test_a_table_has_the_index_of_each_channel() -> None:
+    skin = material("skin1")
+    three = bake(dataclasses.replace(skin, eta=(1.0, 1.3, 1.5)))
+    np.testing.assert_array_equal(three.eta, (1.0, 1.3, 1.5))
+    for channel, eta in enumerate(three.eta):
+        one = bake(dataclasses.replace(skin, eta=eta))
+        np.testing.assert_array_equal(three.psi[channel], one.psi[channel])
+        assert three.total[channel] == one.total[channel]
+        assert three.entering[channel] == one.entering[channel]
+    # Index one reflects nothing: all light gets in, and all that arrives at the surface gets out.
+    assert three.entering[0] == pytest.approx(1.0, abs=1e-12)
+    assert three.entering[0] > three.entering[1] > three.entering[2]
+
+
+def test_a_table_stored_with_one_index_is_read() -> None:
+    table = bake("skin1")
+    again = PsiTable.from_arrays(table.arrays() | {"eta": np.array(1.3)})
+    np.testing.assert_array_equal(again.eta, table.eta)
+    with pytest.raises(ParameterError, match="eta"):
+        PsiTable.from_arrays(table.arrays() | {"eta": np.ones(2)})

@@ -140,4 +140,4 @@ def test_substances_have_the_betas_asked_for():
     made = substance(BETAS[3:6], 1.4)
     assert made.beta == pytest.approx(BETAS[3:6])
     assert made.mean_free_path == pytest.approx(np.ones(3))
-    assert bake(made).eta == 1.4
+    assert (bake(made).eta == 1.4).all()

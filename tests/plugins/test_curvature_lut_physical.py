@@ -146,7 +146,7 @@ def test_it_is_the_formula(name: str) -> None:
 def test_a_flat_surface_has_its_exact_albedo(name: str) -> None:
     cosines = np.linspace(0.01, 1.0, 100)
     shaded = shade(*sphere(cosines, np.inf), name, [ABOVE], PHYSICAL, hinges=16)
-    eta = material(name).eta
+    eta = material(name).eta[0]
     flat = cosines * transmittance(cosines, eta)
     for channel, medium in enumerate(optics(material(name))):
         rho = flat_albedo(cosines, medium)
@@ -162,7 +162,7 @@ def test_never_more_leaves_a_sphere_than_enters(name: str, profile: str) -> None
     cosines = np.concatenate((0.5 * (x - 1.0), 0.5 * (x + 1.0)))
     weights = np.concatenate((weights, weights))
     lit = np.maximum(cosines, 0.0)
-    eta = material(name).eta
+    eta = material(name).eta[0]
     entered = weights @ (lit * transmittance(lit, eta))
     slack = hinges(eta, 4).error * float(weights[lit > 0.0].sum())  # were it all of one sign
     for radius in np.geomspace(0.01, 1e4, 19):

@@ -4,6 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lutcore.baking import bake
@@ -12,7 +14,8 @@ from lutcore.fresnel import hinges, mean_transmittance, transmittance
 from lutcore.lights import ConeLight, DirectionalLight, Light, PointLight
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.prediction import Scene
+from lutcore.shading import model_registry, shade, shading_inputs, shading_models
 from tests.surfaces import bent, sphere, torus
 
 FloatArray = NDArray[np.float64]
@@ -45,6 +48,7 @@ LIGHTS: list[Light] = [
 # Sums of a few dozen terms of order one.
 ROUNDING = 1e-12
 ABOVE = DirectionalLight((0.0, 0.0, 1.0))
+PRISM = Material("prism", (0.74, 0.88, 1.01), (0.032, 0.17, 0.48), (1.1, 1.3, 1.7))
 
 
 def on_torus(model: str, lights: list[Light], substance: Material | str = "skin1") -> FloatArray:
@@ -82,17 +86,78 @@ def test_lights_add_and_scale(model: str) -> None:
     np.testing.assert_allclose(on_torus(model, [bright]), 2.0 * on_torus(model, [dim]))
 
 
+def grey(substance: Material, channel: int) -> Material:
+    """Return the material that is in all channels what `substance` is in one."""
+    return Material(
+        "one channel",
+        (substance.scattering[channel],) * 3,
+        (substance.absorption[channel],) * 3,
+        substance.eta[channel],
+    )
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_channels_do_not_mix(model: str) -> None:
     skin = material("skin1")
     together = on_torus(model, LIGHTS)
     for channel in range(3):
-        grey = Material(
-            "one channel", (skin.scattering[channel],) * 3, (skin.absorption[channel],) * 3, 1.3
-        )
-        alone = on_torus(model, LIGHTS, grey)
+        alone = on_torus(model, LIGHTS, grey(skin, channel))
         close = slack(model) if model not in LOCAL else 0.0
         np.testing.assert_allclose(alone[:, channel], together[:, channel], rtol=0.0, atol=close)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_each_channel_has_the_refractive_index_of_its_own(model: str) -> None:
+    together = on_torus(model, LIGHTS, PRISM)
+    for channel in range(3):
+        alone = on_torus(model, LIGHTS, grey(PRISM, channel))
+        # Every local model treats channels apart, from the same tables: no bit may differ.
+        close = slack(model) if model not in LOCAL else 0.0
+        np.testing.assert_allclose(alone[:, channel], together[:, channel], rtol=0.0, atol=close)
+    # More light is reflected at the surface, and back inside, where the index is higher.
+    assert (together[:, 0] != together[:, 1]).any() and (together[:, 1] != together[:, 2]).any()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_three_equal_indices_are_one_to_the_last_bit(model: str) -> None:
+    skin = material("skin1")
+    three = Material("skin1", skin.scattering, skin.absorption, (1.3, 1.3, 1.3))
+    np.testing.assert_array_equal(on_torus(model, LIGHTS, three), on_torus(model, LIGHTS))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_each_channels_error_is_predicted_with_its_own_index(model: str) -> None:
+    mesh, curvatures = torus(900)
+
+    def predicted(substance: Material) -> FloatArray | None:
+        inputs = shading_inputs(mesh, curvatures, substance, LIGHTS)
+        return model_registry.get(model)().predicted_error(Scene.of(inputs, curvatures))
+
+    together = predicted(PRISM)
+    if together is None:
+        pytest.skip("says nothing of its error")
+    for channel in range(3):
+        alone = predicted(grey(PRISM, channel))
+        assert alone is not None
+        np.testing.assert_array_equal(alone[:, channel], together[:, channel])
+
+
+@pytest.mark.parametrize("model", LOCAL)
+@settings(max_examples=4, deadline=None, derandomize=True)
+@example(eta=(1.0, 1.0, 3.0))
+@given(eta=st.tuples(*[st.floats(1.0, 3.0)] * 3))
+def test_no_index_makes_a_fault_or_light_on_a_flat_surface(
+    model: str, eta: tuple[float, float, float]
+) -> None:
+    skin = material("skin1")
+    made = Material("any index", skin.scattering, skin.absorption, eta)
+    cosines = np.linspace(-1.0, 1.0, 41)
+    for radius in (0.5, 5.0, np.inf):
+        shaded = shade(*sphere(cosines, radius), made, [ABOVE], model)
+        assert np.isfinite(shaded).all() and (shaded >= 0.0).all()
+    # What gets in, F_t(N.w), and what of it comes out are 1 at most; c F_t(c) by hinges may be off.
+    off = [hinges(index, 4).error for index in eta]
+    assert (shaded.max(axis=0) <= 1.0 + np.array(off)).all()
 
 
 @pytest.mark.parametrize("model", LOCAL)

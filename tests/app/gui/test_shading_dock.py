@@ -41,7 +41,7 @@ def test_a_preset_changes_material_sliders_figures_and_picture(qtbot, window, pa
     pick(panel.material.preset, "marble")
     settled(qtbot, window)
     assert window.controller.session.material == "marble"
-    assert panel.material.scattering[2].value == 3.0 and panel.material.eta.value == 1.5
+    assert panel.material.scattering[2].value == 3.0 and panel.material.eta[1].value == 1.5
     assert (window.controller.outcome.composition.panels[0].content.rgb != before).any()
     known = material("marble")
     length = known.mean_free_path[0] / known.beta[0]
@@ -67,6 +67,29 @@ def test_sliders_back_at_the_named_values_are_the_named_material(qtbot, window, 
     assert window.controller.session.material.scattering[0] == 0.5
     type_number(panel.material.scattering[0].number, "0.74")
     assert window.controller.session.material == "skin1"
+
+
+def test_the_three_indices_move_together_until_they_are_parted(qtbot, window, panel, monkeypatch):
+    monkeypatch.setattr("app.gui.document._ONE_STEP", 0.0)  # what follows at once is a step too
+    form = panel.material
+    assert form.linked.isChecked()
+    type_number(form.eta[1].number, "1.5")
+    assert [slider.value for slider in form.eta] == [1.5, 1.5, 1.5]
+    assert window.controller.session.material.eta == 1.5
+    before = window.controller.outcome.composition.panels[0].content.rgb
+    form.linked.click()
+    type_number(form.eta[2].number, "2")
+    settled(qtbot, window)
+    assert window.controller.session.material.eta == (1.5, 1.5, 2.0)
+    after = window.controller.outcome.composition.panels[0].content.rgb
+    changed = (after != before).any(axis=0)
+    assert changed[2]
+    # Joined again they are what red is, and that is one step to undo.
+    form.linked.click()
+    assert window.controller.session.material.eta == 1.5
+    window.act(window.actions_["edit.undo"])
+    assert window.controller.session.material.eta == (1.5, 1.5, 2.0)
+    assert not form.linked.isChecked() and form.eta[2].value == 2.0
 
 
 def test_no_absorption_is_the_left_end(window, panel):
