@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkShaderProperty, vtkTexture, vtkUniforms
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 _DECLARED, _DONE = "//VTK::Normal::Dec", "//VTK::Normal::Impl"
 _TEXTURES, _COLOR = "//VTK::TCoord::Dec", "//VTK::Light::Impl"
-_UNSHIFTED = 0  # vtkOpenGLVertexBufferObject::DISABLE_SHIFT_SCALE
+_UNSHIFTED, _AUTOMATIC = 0, 1  # vtkOpenGLVertexBufferObject's DISABLE_ and AUTO_SHIFT_SCALE
 
 
 class PixelLight:
@@ -51,6 +52,7 @@ class PixelLight:
         self._actors = list(actors)
         self._origin = np.asarray(origin)
         self._texture = None if look.table is None else _texture(look.table)
+        self._points: list[vtkPoints] = []
         for actor, vertices in self._actors:
             self._give(actor, vertices)
         for actor, _ in self._actors:
@@ -94,12 +96,14 @@ class PixelLight:
         """Leave the actors as they were, in the colours of their vertices."""
         for style in self._styles():
             _clear(style)
-        for actor, _ in self._actors:
+        for (actor, _), points in zip(self._actors, self._points, strict=True):
             for uniforms in _uniforms(actor):
                 uniforms.RemoveAllUniforms()
             mapper = actor.GetMapper()
             mapper.RemoveAllVertexAttributeMappings()
             mapper.ScalarVisibilityOn()
+            mapper.SetVBOShiftScaleMethod(_AUTOMATIC)
+            mapper.GetInput().SetPoints(points)
             for name in self.look.attributes:
                 mapper.GetInput().GetPointData().RemoveArray(_array(name))
             actor.GetProperty().RemoveTexture(glsl.TABLE)
@@ -122,7 +126,9 @@ class PixelLight:
                 name, _array(name), vtkDataObject.FIELD_ASSOCIATION_POINTS, -1
             )
         mapper.ScalarVisibilityOff()
-        # Positions as they are: VTK would hand them over in a frame of its own.
+        data = mapper.GetInput()
+        self._points.append(data.GetPoints())
+        data.SetPoints(_as_they_are(data.GetPoints()))
         mapper.SetVBOShiftScaleMethod(_UNSHIFTED)
         if self._texture is not None:
             actor.GetProperty().SetTexture(glsl.TABLE, self._texture)
@@ -137,6 +143,15 @@ class PixelLight:
 def _uniforms(actor: vtkActor) -> tuple[vtkUniforms, vtkUniforms]:
     style = actor.GetShaderProperty()
     return style.GetVertexCustomUniforms(), style.GetFragmentCustomUniforms()
+
+
+def _as_they_are(points: vtkPoints) -> vtkPoints:
+    """Return the same points for VTK to send anew: what it sent is in a frame of its own."""
+    array = points.GetData().NewInstance()
+    array.ShallowCopy(points.GetData())
+    made = vtkPoints()
+    made.SetData(array)
+    return made
 
 
 def _array(name: str) -> str:

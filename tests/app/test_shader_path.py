@@ -191,6 +191,28 @@ def test_what_is_taken_off_leaves_the_colours_of_vertices(torus, pipeline) -> No
         np.testing.assert_array_equal(drawn.pixels(), before)
 
 
+def test_places_are_right_on_a_mesh_of_another_size(torus, pipeline, tmp_path) -> None:
+    """VTK draws from positions in a frame of its own, which depends on their extent."""
+    import trimesh
+
+    path = str(tmp_path / "large.ply")
+    mesh = trimesh.load(torus[0], process=False)
+    trimesh.Trimesh(20.0 * mesh.vertices, mesh.faces, process=False).export(path)
+    near = [
+        replace(LIGHTS[1], position=(-80.0, 60.0, 80.0), intensity=(2e3, 2e3, 3e3)),
+        replace(LIGHTS[2], position=(80.0, -80.0, 100.0), intensity=(2e3, 4e3, 2e3)),
+    ]
+    session = _session(path, scale=6.0, mm_per_unit=0.1, lights=near)
+    with offscreen_window(session.size, 0) as window:
+        drawn = Drawn(window, session, pipeline)
+        vertex = drawn.pixels()
+        light = drawn.shaded()
+        inside = _inside(vertex)
+        assert np.abs(vertex - drawn.pixels())[:120][inside].max() <= BYTES
+        light.remove()
+        np.testing.assert_array_equal(drawn.pixels(), vertex)
+
+
 def test_lights_of_other_kinds_are_followed_too(torus, pipeline) -> None:
     session = _session(torus[0], scale=0.3, exposure=1.0, lights=LIGHTS[:1])
     for lights in (LIGHTS[1:], LIGHTS[::-1], LIGHTS[:1]):
