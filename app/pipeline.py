@@ -274,8 +274,11 @@ class Pipeline:
         from lutcore.scale import shading_scale
 
         subject = self.subject(session)
-        glow = self.glow(session)
-        return self.once(("scale", subject.key, glow), lambda: shading_scale(subject.mesh, glow))
+        glow, most = self.glow(session), subject.mesh.diagonal
+        # Of a mesh of few faces the spacing alone may ask for more than there is.
+        return self.once(
+            ("scale", subject.key, glow), lambda: min(shading_scale(subject.mesh, glow), most)
+        )
 
     def glow(self, session: Session) -> float:
         """Return how far light carries the edge of a shadow, in the channel where it is most.
