@@ -28,6 +28,8 @@ _SHADING = 3.0
 # No scale that shading chooses by itself is longer than this share of the mesh: where light
 # reaches farther than that, no local model holds, and the warning says so.
 _LONGEST = 0.05
+# Of a mesh of few faces the spacing alone may ask for more than there is.
+_WHOLE_MESH = 0.5
 
 
 def shading_scale(mesh: TriangleMesh, glow: float) -> float:
@@ -49,7 +51,7 @@ def shading_scale(mesh: TriangleMesh, glow: float) -> float:
     -------
     float
         The larger of the two lengths, mesh units, the glow counting up to a twentieth of the
-        mesh's diagonal; just `glow` if no face has an area.
+        mesh's diagonal, and both up to a half; just `glow` if no face has an area.
     """
     welded = weld(mesh).mesh
     if welded is None:
@@ -72,7 +74,7 @@ def scale_between(glow: float, extent: float, spacing: float) -> float:
     float
         The scale, mesh units.
     """
-    return max(min(glow, _LONGEST * extent), _SHADING * spacing)
+    return min(max(min(glow, _LONGEST * extent), _SHADING * spacing), _WHOLE_MESH * extent)
 
 
 def rungs(

@@ -69,6 +69,10 @@ class Scatter(QWidget):
         self.setMouseTracking(True)
         self.setMinimumSize(QSize(220, 160))
 
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Return room in which dots and their names stand apart."""
+        return QSize(480, 270)
+
     def show_dots(self, dots: Sequence[Dot], line: float | None) -> None:
         """Show other dots.
 
@@ -209,7 +213,8 @@ class Scatter(QWidget):
         painter.drawText(below, Qt.AlignmentFlag.AlignHCenter, self._titles[0])
         painter.save()
         painter.rotate(-90.0)
-        beside = QRectF(-frame.bottom(), 1.0, frame.height(), height)
+        # All of the height there is: the frame alone may be shorter than the words.
+        beside = QRectF(-float(self.height()), 1.0, float(self.height()), height)
         painter.drawText(beside, Qt.AlignmentFlag.AlignHCenter, self._titles[1])
         painter.restore()
         if self._line is not None:

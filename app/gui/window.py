@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from qtpy.QtCore import QObject, Qt, Signal
+from qtpy.QtCore import Qt
 from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import QMainWindow, QMenu, QVBoxLayout, QWidget
 
@@ -26,6 +26,7 @@ from app.gui.light_tool import LightTool
 from app.gui.lights import Lights
 from app.gui.open_menus import add_open_menus
 from app.gui.pixel_path import PixelPath
+from app.gui.poster import Poster
 from app.gui.progress_bar import ProgressBar
 from app.gui.rescue import Rescue
 from app.gui.settings import Settings
@@ -40,29 +41,6 @@ from app.session import Camera, Session
 
 # About as many triangles as a software renderer turns smoothly.
 _COARSE = 30_000
-
-
-class Poster(QObject):
-    """Runs functions on the thread that it was made in."""
-
-    _posted = Signal(object)
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._posted.connect(self._run, Qt.ConnectionType.QueuedConnection)
-
-    def post(self, call: Callable[[], None]) -> None:
-        """Run a function soon.
-
-        Parameters
-        ----------
-        call : callable
-            Takes nothing.
-        """
-        self._posted.emit(call)
-
-    def _run(self, call: Callable[[], None]) -> None:
-        call()
 
 
 class Window(QMainWindow):

@@ -154,3 +154,11 @@ def test_lights_of_the_camera_turn_with_it_and_others_do_not():
 def test_a_missing_mesh_is_an_error_with_its_name(tmp_path):
     with pytest.raises(MeshError, match="gone"):
         Pipeline().subject(changed(mesh=str(tmp_path / "gone.ply")))
+
+
+def test_a_scale_that_nobody_gave_is_never_refused(tmp_path):
+    path = tmp_path / "square.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    session, pipeline = Session(mesh=str(path)), Pipeline()
+    assert 0.0 < pipeline.scale(session) <= pipeline.subject(session).mesh.diagonal
+    assert pipeline.exitance(session, session.model, AXES).shape == (4, 3)

@@ -19,7 +19,7 @@ _AREAS = {
     "right": Qt.DockWidgetArea.RightDockWidgetArea,
     "bottom": Qt.DockWidgetArea.BottomDockWidgetArea,
 }
-_SHARE = 0.28
+_SHARE = 0.4
 
 
 class _Scroll(QScrollArea):

@@ -12,6 +12,7 @@ from qtpy.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QPushButton,
+    QSizePolicy,
     QSlider,
     QVBoxLayout,
     QWidget,
@@ -82,6 +83,9 @@ class ChoosePanel(QWidget):
         self.map = QCheckBox("Show where each model is predicted to be enough", self)
         self.map.toggled.connect(self.choosing.show_map)
         self.legend = QListWidget(self)
+        # What it would like to be high would push the chart's axis out of sight.
+        self.legend.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
+        self.legend.setMinimumHeight(4 * self.fontMetrics().height())
         self.legend.setAccessibleName("Models that are enough, with their share of the vertices")
         self._layout()
         self._rest = QTimer(self)

@@ -124,6 +124,11 @@ class ProbePanel(QSplitter):
         else:
             self._rest.start()
 
+    def hideEvent(self, event: object) -> None:  # noqa: N802
+        """Take the mark off the mesh: nobody follows the mouse any more."""
+        self._rest.stop()
+        self.probing.leave()
+
     def _on_click(self, place: Place) -> None:
         if self.isVisible() and place.panel is not None:
             self._place, self._pin_next = place, True
@@ -153,7 +158,7 @@ class ProbePanel(QSplitter):
             )
         for one in found.readings:
             words = ", ".join(map(str, one.color))
-            error_words = "" if one.error is None else f"{100.0 * one.error:.2g} % of R_d"
+            error_words = "" if one.error is None else f"{100.0 * one.error:.3g} % of R_d"
             self._add(one.model, words, error_words).setIcon(1, _swatch(one.color))
         self._widen()
         if self._pin_next:

@@ -142,7 +142,7 @@ def _colors(image: np.ndarray) -> set[str]:
 def test_a_texture_is_seen_and_can_be_left_out(open_window, qtbot, tmp_path, obj, kind) -> None:
     path = obj() if kind == "obj" else glb(tmp_path)
     # Marble is white enough to see the picture's colours in its light.
-    session = Session(mesh=str(path), material="marble", camera="front", scale=1.0)
+    session = Session(mesh=str(path), material="marble", camera="front")
     window = open_window(session)
     assert _colors(pixels(window)) == {"red", "green", "blue"}
     panel = window.docks["shading"].fill()

@@ -4,7 +4,7 @@ import csv
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QEvent, QPoint, Qt
 from qtpy.QtGui import QGuiApplication
 
 from tests.app.gui.conftest import pixels, settled
@@ -40,6 +40,24 @@ def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) ->
     # What the model of the view gives is what the view shows there.
     color = pixels(window)[_middle(window).y(), _middle(window).x()].astype(int)
     assert np.abs(color - found.readings[0].color).max() <= 6 or (color > 240).all()
+
+
+def test_the_mark_under_the_mouse_goes_with_the_panel(window, qtbot, panel) -> None:
+    plain = pixels(window)
+    for away in (9, 0):
+        qtbot.mouseMove(window.canvas, _middle(window) + QPoint(away, away))
+    qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
+    settled(qtbot, window)
+    assert (pixels(window) != plain).any()
+    height = window.canvas.height()
+    window.act(window.actions_["window.probe"])
+    qtbot.waitUntil(lambda: window.canvas.height() > height)
+    settled(qtbot, window)
+    left = pixels(window)
+    window.canvas.leaveEvent(QEvent(QEvent.Type.Leave))
+    settled(qtbot, window)
+    np.testing.assert_array_equal(pixels(window), left)
+    assert panel.probing.current is None
 
 
 def test_a_click_pins_and_the_table_can_be_copied_and_saved(window, qtbot, panel, tmp_path) -> None:
