@@ -18,7 +18,7 @@ from lutcore.parameters import choice, param
 from lutcore.shading import ShadingModel, model_registry, shading_inputs
 
 MODELS = ["--models", "lambert,curvature-lut,gather"]
-FAST = ["--repeats", "1", "--sample", "20", "--limit", "5", "--method", "rusinkiewicz2004"]
+FAST = ["--repeats", "1", "--sample", "20", "--limit", "120", "--method", "rusinkiewicz2004"]
 
 
 @pytest.fixture(scope="module")
