@@ -23,6 +23,8 @@ a dipole of eta 1.3 that reflects 99 % has beta .0037. The lowest beta of their 
 .0090 (cream, red), so that the floor alters none of them. R_d itself stays exact.
 """
 
+USUAL = 64
+"""Samples that bring the psi of a dipole within 1e-6 of the integral."""
 _SAMPLES = (8, 8192)
 
 
@@ -34,8 +36,8 @@ def samples_parameter() -> Any:
     dataclasses.Field
         For the plug-in's frozen dataclass; see `lutcore.shading.ShadingInputs.baked`.
     """
-    doc = "Samples of psi in the table, 8 or more; 0: as many as the profile needs, 64 if a dipole."
-    return param(0, 0, 1024, "", doc)
+    doc = "Samples of psi in the table, for a dipole; a profile that needs more gets more in ratio."
+    return param(USUAL, 8, 1024, "", doc)
 
 
 def bake(

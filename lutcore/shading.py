@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lutcore.arrays import FloatArray, IndexArray, finite
-from lutcore.baking import bake, resolved
+from lutcore.baking import USUAL, bake, resolved
 from lutcore.compiled import compiled
 from lutcore.convexity import convex_part
 from lutcore.curvature import PrincipalCurvatures
@@ -85,7 +85,7 @@ class ShadingInputs:
     @property
     def table(self) -> PsiTable:
         """The psi table of the material and the profile, baked once."""
-        return self.baked(0)
+        return self.baked(USUAL)
 
     def baked(self, samples: int) -> PsiTable:
         """Return the psi table with a number of samples, baked once.
@@ -93,19 +93,14 @@ class ShadingInputs:
         Parameters
         ----------
         samples : int
-            8 to 8192, or 0 for as many as the profile needs.
+            8 to 1024, as a dipole counts them; see `lutcore.baking.samples_parameter`.
 
         Returns
         -------
         PsiTable
-            See `lutcore.baking.bake`.
-
-        Raises
-        ------
-        ParameterError
-            If there may not be so few.
+            With as many for a dipole, more for a profile whose psi bends more.
         """
-        return bake(self.material, samples or None, self.profile)
+        return bake(self.material, samples * self.profile.knots // USUAL, self.profile)
 
 
 @dataclass(frozen=True)

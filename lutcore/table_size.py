@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from lutcore.baking import bake
 from lutcore.shading import ShadingInputs, ShadingModel
 from lutcore.tolerance import Tolerance
 
@@ -35,9 +34,9 @@ def samples_needed(inputs: ShadingInputs, tolerance: Tolerance) -> int:
     bends = np.sqrt(np.square(inputs.shape[:, :3]).sum(axis=1))
     kappa = max(float(np.percentile(bends, 99.0)) if len(bends) else 0.0, 1e-9)
     a = np.linspace(-1.0, 1.0, 2001)
-    fine = bake(inputs.material, _FINE, inputs.profile)
+    fine = inputs.baked(_FINE)
     for count in SIZES[:-1]:
-        coarse = bake(inputs.material, count, inputs.profile)
+        coarse = inputs.baked(count)
         off = np.abs(coarse.evaluate(a, kappa) - fine.evaluate(a, kappa)) / fine.total
         if off.max() < allowed:
             return count

@@ -37,3 +37,11 @@ def test_models_without_a_table_stay_as_they_are() -> None:
     assert with_samples(lambert, 8) == lambert
     for name in ("curvature-lut", "curvature-lut-physical", "kolchin2007"):
         assert with_samples(model_registry.get(name)(), 16).samples == 16  # type: ignore[attr-defined]
+
+
+def test_a_profile_that_needs_more_samples_gets_them() -> None:
+    body = analytic.sphere(50)
+    for profile, usual in (("jensen2001", 64), ("burley2015", 512)):
+        inputs = shading_inputs(body.mesh, body.truth, "skin1", [], profile=profile)
+        assert inputs.table.psi.shape[1] == usual
+        assert inputs.baked(8).psi.shape[1] == usual // 8
