@@ -32,10 +32,7 @@ class Substances(Subjects):
         ParameterError
             If the name does not exist, or a coefficient is out of range.
         """
-        chosen = session.material
-        if isinstance(chosen, Substance):
-            return Material(chosen.name, chosen.scattering, chosen.absorption, chosen.eta)
-        return material(chosen)
+        return material_of(session.material)
 
     def profile(self, session: Session) -> "DiffusionProfile":
         """Return the session's diffusion profile.
@@ -110,3 +107,26 @@ class Substances(Subjects):
             True if some channel is shaded with the least absorption instead of its own.
         """
         return bool(self.table(session).floored.any())
+
+
+def material_of(chosen: str | Substance) -> Material:
+    """Return the material that a session names or spells out.
+
+    Parameters
+    ----------
+    chosen : str or Substance
+        `Session.material`.
+
+    Returns
+    -------
+    Material
+        The same.
+
+    Raises
+    ------
+    ParameterError
+        If there is none of that name.
+    """
+    if isinstance(chosen, str):
+        return material(chosen)
+    return Material(chosen.name, chosen.scattering, chosen.absorption, chosen.eta)
