@@ -183,7 +183,7 @@ def _shares(
     """Return which lights reach which vertices, softened by `glow` where a model is local."""
     from lutcore.visibility import forecast, softened, visibility
 
-    # As `app.pipeline.Pipeline.visibility`, which keeps each step.
+    # As `app.steps.visibility`, which keeps each step.
     assert inputs.curvatures is not None
     normals = inputs.curvatures.normals
     if shadows == "auto" and not forecast(mesh, normals, inputs.lights).needed:

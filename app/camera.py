@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.pipeline import Subject
 from app.session import Camera, Vector
+from app.steps.subject import Subject
 from lutcore.arrays import FloatArray
 from lutcore.errors import ParameterError
 from lutcore.islands import main_islands

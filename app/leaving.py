@@ -8,8 +8,9 @@ from collections.abc import Hashable
 import numpy as np
 
 from app.camera import axes
-from app.pipeline import Pipeline, Subject
+from app.pipeline import Pipeline
 from app.session import Camera, Session
+from app.steps.subject import Subject
 from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 

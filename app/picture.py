@@ -15,12 +15,13 @@ from app.contestants import alone, bars, check, labels, tiles
 from app.differences import Difference
 from app.fading import faded
 from app.leaving import leaving, view_of
-from app.pipeline import Pipeline, Subject
+from app.pipeline import Pipeline
 from app.render import STRIP, Image, Panel, draw
 from app.scene import ColorScale, Surface
 from app.session import Camera, Method, Session
 from app.settling import settled
 from app.shown import names_shown, shown
+from app.steps.subject import Subject
 from app.texturing import Coat
 from lutcore.arrays import FloatArray
 from lutcore.color import auto_exposure, product_bytes

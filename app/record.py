@@ -20,9 +20,11 @@ from app.settling import recorded, settled
 from app.transparency import without_need
 from lutcore.shading import AUTO
 
+MAKER = "curvelight"
+"""The package whose version says which program made a picture."""
 # Whatever a pixel can depend on beside the session, the mesh and the driver.
 _PACKAGES = (
-    "curvelight",
+    MAKER,
     "numpy",
     "scipy",
     "numba",

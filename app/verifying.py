@@ -1,7 +1,5 @@
 """Whether a picture is what its own record makes, and if not, why."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,15 +8,12 @@ from msgspec.structs import replace
 from app.likeness import THRESHOLD, Likeness, likeness
 from app.picture import render
 from app.pipeline import Pipeline
-from app.provenance import PictureError, read_pixels, read_record
-from app.record import Record, elsewhere, pixels_digest, record_of
+from app.provenance import read_pixels, read_record
+from app.record import MAKER, Record, elsewhere, pixels_digest, record_of
+from app.redrawing import redrawing
 from app.render import Image
-from app.samples import PREFIX
-from app.session import Session
-from lutcore.errors import ParameterError
 
 _SHOWN = 12
-_MAKER = "curvelight"
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,11 +134,11 @@ class Verdict:
         return "reproduced bit for bit" if self.untouched else "reproduced within limits"
 
     def _other_versions(self) -> str:
-        maker = self.versions.get(_MAKER)
+        maker = self.versions.get(MAKER)
         others = ", ".join(
             f"{name} {then or 'none'} (here {now or 'none'})"
             for name, (then, now) in self.versions.items()
-            if name != _MAKER
+            if name != MAKER
         )
         made = f"made by Curvelight {maker[0]}, this is {maker[1]}" if maker else "made"
         made += f" with {others}" if others else ""
@@ -217,42 +212,3 @@ def verify(
         expected,
         made.image,
     )
-
-
-@contextmanager
-def redrawing(path: Path, record: Record, edited: bool) -> Iterator[None]:
-    """Say what keeps a picture from being drawn again.
-
-    Parameters
-    ----------
-    path : Path
-        Its file.
-    record : Record
-        How it was made.
-    edited : bool
-        Whether its metadata were edited.
-
-    Yields
-    ------
-    None
-        To draw in.
-
-    Raises
-    ------
-    PictureError
-        If its mesh is not there, or a name or value in its record is not known here.
-    """
-    session: Session = record.session
-    if not session.mesh.startswith(PREFIX) and not Path(session.mesh).exists():
-        raise PictureError(
-            f"{path}: its mesh is not at {session.mesh}; say where it is: --mesh FILE"
-        )
-    try:
-        yield
-    except ParameterError as error:
-        reason = (
-            "its metadata were edited after it was written"
-            if edited
-            else f"install what drew it, Curvelight {record.versions.get(_MAKER)} and its plug-ins"
-        )
-        raise PictureError(f"{path}: cannot be redrawn: {error}; {reason}") from None

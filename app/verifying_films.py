@@ -16,8 +16,9 @@ from app.likeness import LEAST_SSIM, THRESHOLD, Likeness, likeness
 from app.picture import Picture
 from app.pipeline import Pipeline
 from app.record import elsewhere
+from app.redrawing import redrawing
 from app.render import Image
-from app.verifying import Verdict, redrawing
+from app.verifying import Verdict
 
 CODED_THRESHOLD, CODED_SSIM = 12.0, 0.9
 """As `app.likeness.THRESHOLD` and its SSIM, of a film against the frames that were encoded.

@@ -12,8 +12,9 @@ from psygnal import Signal
 from app import session as state
 from app.gui.document import Document
 from app.gui.worker import Post, Worker
-from app.pipeline import Pipeline, Subject
+from app.pipeline import Pipeline
 from app.session import Camera, Session, Settled
+from app.steps.subject import Subject
 from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 

@@ -6,7 +6,7 @@ from collections import deque
 from psygnal import Signal
 
 from app.gui.controller import Controller
-from app.pipeline import Subject
+from app.steps.subject import Subject
 
 MOST_LINES = 2000
 

@@ -7,6 +7,7 @@ from qtpy.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGridLayout, QLabe
 
 from app.gui.slider import Slider
 from app.session import Substance
+from app.steps.substance import material_of
 from lutcore.errors import ParameterError
 from lutcore.materials import Material, material, materials
 
@@ -197,29 +198,6 @@ class _Facts(QWidget):
         for channel, (length, total) in enumerate(zip(lengths, totals, strict=True)):
             self.cells["length", channel].setText(f"{length:.3g}".replace("inf", "\u221e"))
             self.cells["total", channel].setText(f"{total:.3f}")
-
-
-def material_of(chosen: str | Substance) -> Material:
-    """Return the material that a session names or spells out.
-
-    Parameters
-    ----------
-    chosen : str or Substance
-        `Session.material`.
-
-    Returns
-    -------
-    Material
-        The same.
-
-    Raises
-    ------
-    ParameterError
-        If there is none of that name.
-    """
-    if isinstance(chosen, str):
-        return material(chosen)
-    return Material(chosen.name, chosen.scattering, chosen.absorption, chosen.eta)
 
 
 def _same(name: str, made: Substance) -> bool:

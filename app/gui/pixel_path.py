@@ -9,9 +9,9 @@ from app.gui.canvas import Canvas
 from app.gui.controller import Controller, Outcome
 from app.gui.pixel_race import Contest, PixelRace, step_seconds
 from app.gui.settings import Settings
-from app.pipeline import Subject
 from app.session import Camera, Session
 from app.shader.look import PixelLook, look_of, unsupported
+from app.steps.subject import Subject
 
 CHOICES = {
     "automatic": ("The faster way", "Shade at pixels where this machine draws that faster"),

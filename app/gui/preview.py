@@ -15,8 +15,8 @@ from lutcore.arrays import FloatArray
 from lutcore.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from app.pipeline import Subject
     from app.session import Session
+    from app.steps.subject import Subject
 
 
 def preview(session: "Session", subject: "Subject") -> Composition:

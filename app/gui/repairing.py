@@ -4,8 +4,8 @@ from msgspec.structs import replace
 from psygnal import Signal
 
 from app.gui.controller import Controller, Outcome
-from app.pipeline import Subject
 from app.session import Repair
+from app.steps.subject import Subject
 from lutcore.health import MeshHealth
 
 

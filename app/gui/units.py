@@ -4,7 +4,7 @@ from psygnal import Signal
 
 from app.gui.controller import Controller
 from app.gui.settings import Settings
-from app.pipeline import Subject
+from app.steps.subject import Subject
 from lutcore.health import MeshHealth
 
 UNITS = {"\N{MICRO SIGN}m": 0.001, "mm": 1.0, "cm": 10.0, "inch": 25.4, "m": 1000.0}

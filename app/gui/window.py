@@ -36,8 +36,8 @@ from app.gui.unit_bar import UnitBar
 from app.gui.units import Units
 from app.gui.unsaved import Answer, ask, may_leave
 from app.gui.vision import Vision
-from app.pipeline import Subject
 from app.session import Camera, Session
+from app.steps.subject import Subject
 
 # About as many triangles as a software renderer turns smoothly.
 _COARSE = 30_000

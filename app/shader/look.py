@@ -8,11 +8,12 @@ import numpy as np
 from app.camera import axes as axes_of
 from app.leaving import albedo
 from app.lighting import world_lights
-from app.pipeline import Pipeline, Subject
+from app.pipeline import Pipeline
 from app.session import Camera, Session
 from app.shader.packing import Packing
 from app.shader.table import SingleArray, halfway, response
 from app.shader.vertices import forms, rows, second
+from app.steps.subject import Subject
 from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from typing import Any
 
 from tests.corpus.cases import Case, corpus, seed_files
 
-# A file; Curvelight's own guard stops a reader after 10 s of the processor.
+# Of the processor, for a file; Curvelight's own guard stops a reader after 10 s of it.
 SECONDS = 20.0
 ADDRESS_SPACE = 6 << 30
 READERS = ("curvelight", "pyvista", "trimesh", "meshio", "pymeshlab")
@@ -137,7 +137,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--readers", default=",".join(READERS), help="some of them, with commas")
     parser.add_argument("--jobs", type=int, default=2, help="files at once")
-    parser.add_argument("--seconds", type=float, default=SECONDS, help="what one file may take")
+    parser.add_argument(
+        "--seconds", type=float, default=SECONDS, help="of the processor, for one file"
+    )
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     readers = tuple(options.readers.split(","))
@@ -153,8 +155,8 @@ def main() -> None:
         return
     print(
         f"{len(cases)} corrupted files, seed {options.seed}, {len(seed_files())} valid ones; "
-        f"at most {options.seconds:g} s and {ADDRESS_SPACE >> 30} GiB each; {options.jobs} at "
-        f"once, {took:.0f} s in all"
+        f"at most {options.seconds:g} s of the processor and {ADDRESS_SPACE >> 30} GiB each; "
+        f"{options.jobs} at once, {took:.0f} s in all"
     )
     names = ("formats", "files of formats it reads", *OUTCOMES)
     print("| reader | " + " | ".join(names) + " | all, s | slowest, s | peak, MiB |")

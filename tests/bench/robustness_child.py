@@ -9,6 +9,7 @@ a face), ``refused``, ``garbage`` (neither finite nor in range, said to be fine)
 
 import contextlib
 import json
+import math
 import os
 import resource
 import selectors
@@ -23,6 +24,7 @@ import numpy as np
 from tests.bench.robustness import ADDRESS_SPACE
 
 Arrays = tuple[Any, Any]
+_SLOWNESS = 4
 _TERM = 60  # files, so that what leaks is not the next ones' lack of memory
 
 
@@ -130,8 +132,9 @@ def _refused(error: BaseException, path: str) -> dict[str, Any]:
 class Worker:
     """A fork of this process that reads one file after another."""
 
-    def __init__(self, reader: str) -> None:
+    def __init__(self, reader: str, seconds: float) -> None:
         self.past = 0
+        self._seconds = seconds
         self._buffer = b""
         from_us, self._to = os.pipe()
         self._from, to_us = os.pipe()
@@ -140,20 +143,20 @@ class Worker:
             try:
                 os.close(self._to)
                 os.close(self._from)
-                _serve(reader, from_us, to_us)
+                _serve(reader, seconds, from_us, to_us)
             finally:
                 os._exit(0)
         os.close(from_us)
         os.close(to_us)
 
-    def read(self, path: str, seconds: float) -> dict[str, Any]:
+    def read(self, path: str) -> dict[str, Any]:
         """Return what became of a file; unless ``alive``, the process has ended."""
         began = time.perf_counter()
         self.past += 1
         found: dict[str, Any] = {"outcome": "died"}
         with contextlib.suppress(OSError):
             os.write(self._to, path.encode() + b"\n")
-        line = self._line(began + seconds)
+        line = self._line(began + _SLOWNESS * self._seconds)
         if line is None:
             os.kill(self._child, signal.SIGKILL)
             found = {"outcome": "hung"}
@@ -162,7 +165,9 @@ class Worker:
         if "alive" not in found:
             _, status, used = os.wait4(self._child, 0)
             found["peak_mib"] = used.ru_maxrss / 1024.0
-            if found["outcome"] == "died":
+            if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU:
+                found["outcome"] = "hung"
+            elif found["outcome"] == "died":
                 found["said"] = str(status)
             self._close()
         found["seconds"] = time.perf_counter() - began
@@ -192,9 +197,12 @@ class Worker:
         os.close(self._from)
 
 
-def _serve(reader: str, lines: int, answers: int) -> None:
+def _serve(reader: str, seconds: float, lines: int, answers: int) -> None:
     """Read files by their names until there are none."""
     for line in os.fdopen(lines):
+        # The processor's time: a loop without end is one on a busy machine, too.
+        end = math.ceil(time.process_time() + seconds)
+        resource.setrlimit(resource.RLIMIT_CPU, (end, resource.RLIM_INFINITY))
         with contextlib.suppress(OSError), open("/proc/self/clear_refs", "w") as peak:
             peak.write("5")  # the peak begins anew, where the system can do that
         found = judged(reader, line.rstrip("\n"))
@@ -210,7 +218,10 @@ def _peak() -> float:
 
 
 class Workers:
-    """Reads files by one fork as long as it lives, and no longer than `_TERM` files."""
+    """Reads files by one fork as long as it lives, and no longer than `_TERM` files.
+
+    Each file may take so many seconds of the processor, and `_SLOWNESS` times as many of waiting.
+    """
 
     def __init__(self, reader: str) -> None:
         self._reader = reader
@@ -219,8 +230,8 @@ class Workers:
     def read(self, path: str, seconds: float) -> dict[str, Any]:
         """Return what became of a file."""
         while True:
-            worker = self._worker or Worker(self._reader)
-            found = worker.read(path, seconds)
+            worker = self._worker or Worker(self._reader, seconds)
+            found = worker.read(path)
             alive = found.pop("alive", False)
             spent = alive and (worker.past >= _TERM or found["outcome"] == "memory")
             if spent:

@@ -91,3 +91,14 @@ def test_all_readers_get_all_files_and_some_readers_can_be_chosen(tmp_path, caps
     with pytest.raises(SystemExit):
         robustness.main()
     assert "no reader blender; there are curvelight" in capsys.readouterr().err
+
+
+def test_a_loop_without_end_is_stopped_by_the_time_of_the_processor(tmp_path, monkeypatch):
+    def spin(path):
+        while True:
+            pass
+
+    monkeypatch.setitem(robustness_child._READERS, "spin", ("app", spin))
+    monkeypatch.setattr(robustness_child, "_SLOWNESS", 1000)  # the clock would stop it too
+    found = robustness_child.Workers("spin").read(str(tmp_path), 0.5)
+    assert found["outcome"] == "hung" and "said" not in found

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGroupBox, QVBoxLayout, QWidget
 
-from app.gui.material_form import MaterialForm, material_of
+from app.gui.material_form import MaterialForm
 from app.gui.plugin_form import PluginForm
 from app.gui.slider import Slider
 
@@ -202,7 +202,7 @@ class ShadingPanel(QWidget):
         def facts(_: "Progress") -> tuple[list[float], list[float]]:
             from lutcore.diffusion import optics
 
-            made = material_of(session.material)
+            made = pipeline.material(session)
             profile = pipeline.profile(session)
             channels = optics(made)
             lengths = [

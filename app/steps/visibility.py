@@ -1,0 +1,55 @@
+"""Which lights reach which vertices."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from app.session import Session
+from app.steps.curvature import Measurements
+from lutcore.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from lutcore.lights import Light
+
+
+class Visibility(Measurements):
+    """Casts shadows."""
+
+    def visibility(
+        self, session: Session, local: bool, lights: "Sequence[Light]"
+    ) -> FloatArray | None:
+        """Return which lights reach which vertices, as a model needs it.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh, `shadows`, material, profile and, for `auto`, its curvature are used.
+        local : bool
+            Whether for a local model, which gets shadows that are softened as light spreads.
+        lights : sequence of DirectionalLight, PointLight or ConeLight
+            The lights, in world axes.
+
+        Returns
+        -------
+        ndarray, shape=(l, n) or (l, n, 3), or None
+            Shares from 0 to 1; None where the session casts no shadows.
+        """
+        if session.shadows == "off" or not lights:
+            return None
+        from lutcore.lights import pack
+        from lutcore.visibility import forecast, softened, visibility
+
+        subject = self.subject(session)
+        packed = pack(lights)
+        if session.shadows == "auto":
+            normals = self.facing(session)
+            if not forecast(subject.mesh, normals, packed).needed:
+                return None
+        key = ("visibility", subject.key, packed.tobytes())
+        seen = self.once(key, lambda: visibility(subject.mesh, packed, self.progress))
+        if not local:
+            return seen
+        table, size = self.table(session), self.mm_per_unit(session)
+        glow = table.mean_free_path * table.psi[:, 0] / size
+        return self.once(
+            (*key, glow.tobytes()), lambda: softened(seen, subject.mesh, glow, self.progress)
+        )
