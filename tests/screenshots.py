@@ -8,6 +8,7 @@ from pathlib import Path
 from tests.screen import start_screen
 
 _DOCS = Path(__file__).parents[1] / "docs"
+_CALM = 10  # looks in a row at which nothing is being computed
 
 
 def main() -> None:
@@ -19,7 +20,7 @@ def main() -> None:
 
 
 def _take() -> None:
-    from qtpy.QtTest import QTest
+    from qtpy.QtCore import QEventLoop, QTimer
     from qtpy.QtWidgets import QApplication
 
     from app.gui.window import Window
@@ -32,10 +33,17 @@ def _take() -> None:
     window.start()
 
     def wait() -> None:
-        QTest.qWait(600)
-        while window.controller.worker.busy or window.controller.aside.busy:
-            QTest.qWait(20)
-        QTest.qWait(300)
+        # QTest.qWait keeps Python's lock, and so the window's workers waiting.
+        loop, timer, calm = QEventLoop(), QTimer(), []
+
+        def look() -> None:
+            calm.append(not (window.controller.worker.busy or window.controller.aside.busy))
+            if len(calm) > _CALM and all(calm[-_CALM:]):
+                loop.quit()
+
+        timer.timeout.connect(look)
+        timer.start(100)
+        loop.exec()
 
     def take(name: str) -> None:
         wait()
