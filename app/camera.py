@@ -56,7 +56,7 @@ def parse(text: str) -> str | Camera:
     return Camera(position, target, up, angle)  # type: ignore[arg-type]
 
 
-def camera_of(chosen: str | Camera, subject: Subject, aspect: float) -> Camera:
+def camera_of(chosen: str | Camera, subject: Subject, aspect: float, whole: bool = False) -> Camera:
     """Return the camera that a session's choice means for its mesh.
 
     Parameters
@@ -67,6 +67,8 @@ def camera_of(chosen: str | Camera, subject: Subject, aspect: float) -> Camera:
         The mesh, and the sample it came from: that knows its best side.
     aspect : float
         Width over height of the picture.
+    whole : bool
+        Whether stray islands count too: to tell them takes compiled code.
 
     Returns
     -------
@@ -80,8 +82,9 @@ def camera_of(chosen: str | Camera, subject: Subject, aspect: float) -> Camera:
     """
     if isinstance(chosen, Camera):
         return chosen
+    mesh = subject.mesh
     # Stray islands do not shrink the view.
-    points = subject.mesh.vertices[main_islands(subject.mesh)]
+    points = mesh.vertices[np.unique(mesh.faces) if whole else main_islands(mesh)]
     if chosen == "auto" and subject.sample is not None:
         return fit_direction(subject.sample.view, subject.sample.up, points, aspect)
     return fit("front" if chosen == "auto" else chosen, points, aspect)

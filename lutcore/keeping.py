@@ -10,9 +10,12 @@ import pickle
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import fields, is_dataclass
 from functools import lru_cache, wraps
 from pathlib import Path
 from typing import ParamSpec, TypeVar
+
+import numpy as np
 
 from lutcore.cache import folder, sources
 
@@ -40,7 +43,7 @@ def kept(function: Callable[P, R]) -> Callable[P, R]:
     @wraps(function)
     def found(*arguments: P.args, **named: P.kwargs) -> R:
         if not all(map(_known, (*arguments, *named.values()))):
-            return function(*arguments, **named)
+            return _shared(function(*arguments, **named))
         said = (
             f"{function.__module__}.{function.__qualname__} {arguments!r} {sorted(named.items())!r}"
         )
@@ -49,13 +52,26 @@ def kept(function: Callable[P, R]) -> Callable[P, R]:
         with suppress(Exception):
             stored, result = pickle.loads(place.read_bytes())  # noqa: S301  the user's own folder
             if stored == said:
-                return result
-        result = function(*arguments, **named)
+                return _shared(result)
+        result = _shared(function(*arguments, **named))
         with suppress(OSError):  # a full disk hinders no result
             _write(place, pickle.dumps((said, result)))
         return result
 
     return found  # type: ignore[return-value]
+
+
+def _shared(result: R) -> R:
+    """Return a result whose arrays cannot be written: all who ask get the same one."""
+    if isinstance(result, np.ndarray):
+        result.setflags(write=False)
+    elif isinstance(result, tuple | list):
+        for part in result:
+            _shared(part)
+    elif is_dataclass(result):
+        for field in fields(result):
+            _shared(getattr(result, field.name))
+    return result
 
 
 def _known(argument: object) -> bool:

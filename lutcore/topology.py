@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from lutcore.arrays import AnyArray, BoolArray, IndexArray
-from lutcore.compiled import compiled
 
 
 @dataclass(frozen=True)
@@ -98,36 +97,9 @@ def components(links: AnyArray, count: int) -> tuple[int, AnyArray]:
     ndarray of int32, shape=(count,)
         Group of each thing; groups are numbered by their first things.
     """
-    return _joined(np.ascontiguousarray(links), count)
+    from lutcore.joining import joined  # compiled: who reads files need not load it
 
-
-@compiled()
-def _joined(links: AnyArray, count: int) -> tuple[int, IndexArray]:
-    # Union-find: the first of a group stands for it, and ways to it are halved as they are walked.
-    above = np.arange(count, dtype=np.int32)
-    for row in range(len(links)):
-        one = links[row, 0]
-        while above[one] != one:
-            above[one] = above[above[one]]
-            one = above[one]
-        for column in range(1, links.shape[1]):
-            other = links[row, column]
-            while above[other] != other:
-                above[other] = above[above[other]]
-                other = above[other]
-            if other < one:
-                above[one] = other
-                one = other
-            else:
-                above[other] = one
-    groups = 0
-    for thing in range(count):
-        if above[thing] == thing:
-            above[thing] = groups
-            groups += 1
-        else:  # what stands above comes first, and has its number already
-            above[thing] = above[above[thing]]
-    return groups, above
+    return joined(np.ascontiguousarray(links), count)
 
 
 def nonmanifold_vertices(faces: IndexArray, table: Edges, vertex_count: int) -> int:

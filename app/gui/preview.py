@@ -35,7 +35,7 @@ def preview(session: "Session", subject: "Subject") -> Composition:
         One panel.
     """
     width, height = session.size
-    camera = camera_of(session.camera, subject, width / (height * (1.0 - STRIP)))
+    camera = camera_of(session.camera, subject, width / (height * (1.0 - STRIP)), whole=True)
     surface = Surface(subject.mesh, _normals(subject.mesh), lit=True)
     return Composition(session, (Panel(surface, 1.0, camera),), 1, camera, None, {}, None)
 

@@ -71,6 +71,7 @@ class Dock(QDockWidget):
         if self.content is None:
             self.content = self._module.build(self._window)
             scroll = _Scroll(self)
+            scroll.setAccessibleName(self._module.TITLE)
             scroll.setWidgetResizable(True)
             scroll.setFrameShape(QScrollArea.Shape.NoFrame)
             scroll.setWidget(self.content)

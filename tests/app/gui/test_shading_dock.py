@@ -120,7 +120,7 @@ def test_the_scale_is_the_files_own_until_it_is_typed(qtbot, window, panel):
 
 
 def test_a_model_shows_its_own_parameters(qtbot, window, panel):
-    assert set(panel.model.form.controls) == {"hinges", "area"}
+    assert set(panel.model.form.controls) == {"hinges", "area", "samples"}
     panel.model.form.controls["hinges"].setValue(8)
     assert window.controller.session.model == Method("curvature-lut", {"hinges": 8.0})
     pick(panel.model.names, "lambert")
