@@ -17,8 +17,9 @@ def place(tmp_path_factory):
     (folder / "meshes").mkdir()
     for number in range(5):
         sheet(folder / "meshes" / f"good{number}.ply", 12 + number, number)
-    sheet(folder / "meshes" / "crash.ply", CRASH)
-    broken(folder / "meshes" / "broken.ply", 0)
+    # Last in order: each worker, idle at first, is dealt a good one before.
+    sheet(folder / "meshes" / "last-crash.ply", CRASH)
+    broken(folder / "meshes" / "last-broken.ply", 0)
     return folder, os.environ | install(folder / "plugin")
 
 
@@ -43,8 +44,8 @@ def test_a_cluster_draws_what_one_machine_draws_and_takes_it_up(place, cluster):
     assert len(hashes(folder / "here")) == 5
     assert hashes(folder / "there") == hashes(folder / "here")
     reasons = {one["mesh"].rpartition("/")[2]: one["reason"] for one in lines_of(folder / "there")}
-    assert reasons["crash.ply"] == "crashed"
-    assert reasons["broken.ply"] == "unreadable"
+    assert reasons["last-crash.ply"] == "crashed"
+    assert reasons["last-broken.ply"] == "unreadable"
     assert sum(reason == "done" for reason in reasons.values()) == 5
     # Both workers took part, and neither died of the mesh that killed its child.
     assert (
