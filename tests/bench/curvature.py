@@ -68,7 +68,7 @@ def estimate(mesh: TriangleMesh, method: str, limit: float, **parameters: float)
 def contestants() -> dict[str, tuple[str, dict[str, float]]]:
     """Return every estimator, by the name of its row: its own name and its parameters."""
     rows: dict[str, tuple[str, dict[str, float]]] = {name: (name, {}) for name in estimators()}
-    rows["auto, steadiness 300"] = ("auto", {"steadiness": 300.0})
+    rows["auto steadiness 300"] = ("auto", {"steadiness": 300.0})
     rows["libigl radius 2"] = ("libigl", {"radius": 2})
     rows["ball-jet degree 2"] = ("ball-jet", {"degree": 2})
     return rows
