@@ -202,7 +202,4 @@ def _bake(material: Material, samples: int, profile: DiffusionProfile) -> PsiTab
         psi[channel] = (L1 - u * L0) / of_shape
         slope[channel] = -np.cosh(t) * L0 / of_shape  # psi' = -L0, dpsi/dt = psi' cosh t
     eta = np.array(material.eta)
-    table = PsiTable(psi, slope, reach, total, material.mean_free_path, mean_square, eta, floored)
-    for array in table.arrays().values():
-        array.setflags(write=False)
-    return table
+    return PsiTable(psi, slope, reach, total, material.mean_free_path, mean_square, eta, floored)

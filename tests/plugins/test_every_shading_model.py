@@ -134,12 +134,11 @@ def test_each_channels_error_is_predicted_with_its_own_index(model: str) -> None
         return model_registry.get(model)().predicted_error(Scene.of(inputs, curvatures))
 
     together = predicted(PRISM)
-    if together is None:
-        pytest.skip("says nothing of its error")
     for channel in range(3):
         alone = predicted(grey(PRISM, channel))
-        assert alone is not None
-        np.testing.assert_array_equal(alone[:, channel], together[:, channel])
+        assert (alone is None) == (together is None)
+        if alone is not None and together is not None:
+            np.testing.assert_array_equal(alone[:, channel], together[:, channel])
 
 
 @pytest.mark.parametrize("model", LOCAL)
