@@ -6,6 +6,7 @@ from qtpy.QtCore import QPoint, Qt
 
 from lutcore.costs import PREDICTION, Cost, candidates
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 
 @pytest.fixture
@@ -78,7 +79,7 @@ def test_the_table_is_brushed_in_both_directions(window, qtbot) -> None:
     plot, middle = panel.plot, panel.plot.height() // 2
     left = round(plot.across(0.0))
     qtbot.mousePress(plot, Qt.MouseButton.LeftButton, pos=QPoint(left, middle))
-    qtbot.mouseMove(plot, QPoint(left + 40, middle))
+    move(qtbot, plot, QPoint(left + 40, middle))
     qtbot.mouseRelease(plot, Qt.MouseButton.LeftButton, pos=QPoint(left + 40, middle))
     settled(qtbot, window)
     low, high = plot.brush
@@ -89,8 +90,7 @@ def test_the_table_is_brushed_in_both_directions(window, qtbot) -> None:
     assert yellow.any()
     # From the mesh to the table.
     centre = QPoint(window.canvas.width() // 2, window.canvas.height() // 2)
-    qtbot.mouseMove(window.canvas, centre + QPoint(3, 3))
-    qtbot.mouseMove(window.canvas, centre)
+    move(qtbot, window.canvas, centre)
     qtbot.waitUntil(lambda: len(plot.marks) == 3, timeout=240_000)
     assert plot.marks[0] < plot.marks[2]  # red light goes farther
     qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=QPoint(left + 80, middle))

@@ -12,6 +12,7 @@ from app.quantities import QUANTITIES
 from app.session import Method, Session
 from app.shown import trusted
 from lutcore.statistics import histogram
+from tests.app.gui.mouse import move
 
 
 @pytest.fixture
@@ -32,7 +33,7 @@ def _drag(qtbot, bar, start: float, end: float) -> None:
     at = [QPoint(round(bar.x_of(value)), 20) for value in (start, 0.5 * (start + end), end)]
     qtbot.mousePress(bar, Qt.MouseButton.LeftButton, pos=at[0])
     for place in at[1:]:
-        qtbot.mouseMove(bar, place)
+        move(qtbot, bar, place)
     qtbot.mouseRelease(bar, Qt.MouseButton.LeftButton, pos=at[-1])
 
 
@@ -64,7 +65,7 @@ def test_a_double_click_asks_for_the_automatic_range(bar, qtbot) -> None:
 
 def test_the_value_under_the_mouse_is_told(bar, qtbot) -> None:
     with qtbot.waitSignal(bar.pointed) as told:
-        qtbot.mouseMove(bar, QPoint(round(bar.x_of(0.5)), 20))
+        move(qtbot, bar, QPoint(round(bar.x_of(0.5)), 20))
     assert told.args[0] == pytest.approx(0.5, abs=0.01)
     # Half a sigma above the mean of a normal distribution lie 69.1 % of it.
     assert bar._found.share_below(0.5) == pytest.approx(69.1, abs=1.0)
@@ -93,7 +94,7 @@ def test_it_draws_the_map_between_the_ends_and_columns_as_high_as_the_counts(bar
 def test_what_is_dragged_does_not_run_away_while_it_is_followed(bar, qtbot) -> None:
     start = QPoint(round(bar.x_of(1.0)), 20)
     qtbot.mousePress(bar, Qt.MouseButton.LeftButton, pos=start)
-    qtbot.mouseMove(bar, QPoint(bar.width() - 1, 20))
+    move(qtbot, bar, QPoint(bar.width() - 1, 20))
     span = bar.x_of(0.0)
     bar.follow(bar._found, table("green-red"), bar.ends)
     assert bar.x_of(0.0) == span

@@ -9,6 +9,7 @@ from app.gui.form import ParameterForm
 from app.session import Method, Session
 from lutcore.estimation import estimator_registry
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 
 @pytest.fixture
@@ -79,7 +80,7 @@ def test_the_range_is_dragged_as_one_step_and_made_automatic_again(window, panel
     x = round(bar.x_of(bar.ends[1]))
     qtbot.mousePress(bar, Qt.MouseButton.LeftButton, pos=QPoint(x, 20))
     for step in (10, 20, 30):
-        qtbot.mouseMove(bar, QPoint(x - step, 20))
+        move(qtbot, bar, QPoint(x - step, 20))
         qtbot.wait(10)
     qtbot.mouseRelease(bar, Qt.MouseButton.LeftButton, pos=QPoint(x - 30, 20))
     settled(qtbot, window)

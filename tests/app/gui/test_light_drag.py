@@ -16,6 +16,7 @@ from app.settling import model_of
 from lutcore.choice import choose
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -40,8 +41,8 @@ def handle(window, index) -> QPoint:
 
 def drag(qtbot, canvas, start, step, keys=Qt.KeyboardModifier.NoModifier, moves=4):
     QTest.mousePress(canvas, LEFT, keys, start)
-    for move in range(1, moves + 1):
-        QTest.mouseMove(canvas, start + step * move)
+    for nth in range(1, moves + 1):
+        move(qtbot, canvas, start + step * nth)
         qtbot.wait(15)
     QTest.mouseRelease(canvas, LEFT, keys, start + step * moves)
 
@@ -62,8 +63,8 @@ def test_exposure_stands_still_in_a_drag_and_is_the_command_lines_after_it(qtbot
     before = view.controller.outcome.composition.exposure
     start = handle(view, 0)
     QTest.mousePress(view.canvas, LEFT, pos=start)
-    for move in range(1, 5):
-        QTest.mouseMove(view.canvas, start + QPoint(-20, 5) * move)
+    for nth in range(1, 5):
+        move(qtbot, view.canvas, start + QPoint(-20, 5) * nth)
         settled(qtbot, view)
     assert len(exposures) >= 2 and set(exposures) == {before}
     QTest.mouseRelease(view.canvas, LEFT, pos=start + QPoint(-80, 20))
@@ -161,8 +162,8 @@ def test_auto_keeps_its_model_in_a_drag_and_chooses_anew_after_it(
     before = view.controller.outcome.settled
     start = handle(view, 0)
     QTest.mousePress(view.canvas, LEFT, pos=start)
-    for move in range(1, 4):
-        QTest.mouseMove(view.canvas, start + QPoint(-20, 5) * move)
+    for nth in range(1, 4):
+        move(qtbot, view.canvas, start + QPoint(-20, 5) * nth)
         settled(qtbot, view)
         assert view.controller.outcome.settled == before
         assert view.controller.session.model.name == "auto"

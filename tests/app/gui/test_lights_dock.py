@@ -9,6 +9,7 @@ from qtpy.QtTest import QTest
 from app.gui.aiming import from_ball, kept_in, on_ball, seen_by, turned
 from app.session import Camera, Cone, Directional, Point
 from tests.app.gui.conftest import settled
+from tests.app.gui.mouse import move
 
 
 @pytest.fixture
@@ -89,7 +90,7 @@ def test_a_dot_is_dragged_on_the_ball_in_one_step(qtbot, window, panel):
     assert panel.list.currentRow() == 1
     middle = QPoint(ball.width() // 2, ball.height() // 2)
     for share in (0.25, 0.5, 0.75, 1.0):
-        QTest.mouseMove(ball, start + (middle - start) * share)
+        move(qtbot, ball, start + (middle - start) * share)
         qtbot.wait(5)
     QTest.mouseRelease(ball, Qt.MouseButton.LeftButton, pos=middle)
     moved = window.controller.session.lights[1]

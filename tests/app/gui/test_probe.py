@@ -8,6 +8,7 @@ from qtpy.QtCore import QEvent, QPoint, Qt
 from qtpy.QtGui import QGuiApplication
 
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 
 @pytest.fixture
@@ -25,8 +26,7 @@ def _middle(window) -> QPoint:
 
 
 def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) -> None:
-    qtbot.mouseMove(window.canvas, _middle(window) + QPoint(9, 9))
-    qtbot.mouseMove(window.canvas, _middle(window))
+    move(qtbot, window.canvas, _middle(window))
     qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
     found = panel.probing.current
     # The sphere has radius 10 mm, and its middle is seen from the front.
@@ -44,8 +44,7 @@ def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) ->
 
 def test_the_mark_under_the_mouse_goes_with_the_panel(window, qtbot, panel) -> None:
     plain = pixels(window)
-    for away in (9, 0):
-        qtbot.mouseMove(window.canvas, _middle(window) + QPoint(away, away))
+    move(qtbot, window.canvas, _middle(window))
     qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
     settled(qtbot, window)
     assert (pixels(window) != plain).any()

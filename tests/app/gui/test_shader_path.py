@@ -9,6 +9,7 @@ from app.gui.coarse import coarse
 from app.gui.status import Status
 from app.session import Camera, Method, Session
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -28,7 +29,7 @@ def _by_pixel(qtbot, window) -> None:
 def _drag(qtbot, canvas, keys, during) -> None:
     QTest.mousePress(canvas, LEFT, keys, QPoint(300, 300))
     for step in range(1, 5):
-        QTest.mouseMove(canvas, QPoint(300 + 15 * step, 300))
+        move(qtbot, canvas, QPoint(300 + 15 * step, 300))
         qtbot.wait(10)
     during()
     QTest.mouseRelease(canvas, LEFT, keys, QPoint(360, 300))

@@ -8,6 +8,7 @@ from app.scene import Surface
 from app.session import Method, Session
 from app.wiping import column, line
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 PAIRS = {
     "model": (Method("lambert"), Method("wrap")),
@@ -95,7 +96,7 @@ def test_a_drag_moves_the_divider_and_is_one_step(open_window, qtbot) -> None:
     start, end = column(box, 0.5), column(box, 0.25)
     qtbot.mousePress(canvas, Qt.MouseButton.LeftButton, pos=_at(window, start + 3))
     for x in np.linspace(start, end, 6):
-        qtbot.mouseMove(canvas, _at(window, x))
+        move(qtbot, canvas, _at(window, x))
         qtbot.wait(5)
     assert swipe.at == pytest.approx(0.25, abs=0.01)
     assert window.controller.session.wipe == 0.5
@@ -119,7 +120,7 @@ def test_a_drag_beside_the_divider_turns_the_mesh(open_window, qtbot) -> None:
     before = window.canvas.camera
     x = column(window.comparing.swipe.drawn.box, 0.5) + 60
     qtbot.mousePress(window.canvas, Qt.MouseButton.LeftButton, pos=_at(window, x))
-    qtbot.mouseMove(window.canvas, _at(window, x + 40))
+    move(qtbot, window.canvas, _at(window, x + 40))
     qtbot.mouseRelease(window.canvas, Qt.MouseButton.LeftButton, pos=_at(window, x + 40))
     settled(qtbot, window)
     assert window.canvas.camera != before

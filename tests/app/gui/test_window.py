@@ -7,13 +7,14 @@ from qtpy.QtCore import QPoint, Qt
 from app.camera import axes
 from app.session import Camera, Session
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.mouse import move
 
 
 def _drag(qtbot, widget, start: tuple[int, int], end: tuple[int, int], button) -> None:
     qtbot.mousePress(widget, button, pos=QPoint(*start))
     for share in (0.5, 1.0):
         at = [round(a + share * (b - a)) for a, b in zip(start, end, strict=True)]
-        qtbot.mouseMove(widget, QPoint(*at))
+        move(qtbot, widget, QPoint(*at))
         qtbot.wait(5)
     qtbot.mouseRelease(widget, button, pos=QPoint(*end))
 
