@@ -14,7 +14,7 @@ _CAUTION = 3.0
 # Near a rim neighbours differ by more than elsewhere, squared, by about this.
 _WIDER = 4.0
 # Vertices that tell, with their neighbours, how fast curvature changes.
-_STARS = 20_000
+_STARS = 5_000
 
 
 def borrow(

@@ -202,6 +202,9 @@ def shape_operators(
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
+    widest = 0
+    for i in range(count):
+        widest = max(widest, start[i + 1] - start[i])
     normals = np.empty((count, 3))
     tensors = np.empty((count, scales + 1 - first, 3), np.float32)
     stretch = np.empty((count, scales + 1 - first), np.float32)
@@ -209,24 +212,29 @@ def shape_operators(
         n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n
         u, v = tangent_frame(n[0], n[1], n[2])
-        cxx, cxy, cyy = _extent(start, neighbour, fields, i, u, v, unit, near)
+        # What no smoothing changes of a pair: its weight, and where it was.
+        pairs = np.empty((widest, 5))
+        begin, size = start[i], start[i + 1] - start[i]
+        cxx = cxy = cyy = 0.0
+        for at in range(size):
+            weight, xu, xv, nu, nv = _pair(fields, i, neighbour[begin + at], u, v, unit, near)
+            pairs[at, 0], pairs[at, 1], pairs[at, 2] = weight, xu, xv
+            pairs[at, 3], pairs[at, 4] = nu, nv
+            pu, pv = weight * xu, weight * xv
+            cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
         open_before = max(_least(cxx, cxy, cyy), 1e-12 * (cxx + cyy))
         for scale in range(first, scales + 1):
             cxx = cxy = cyy = bxx = bxy = byy = 0.0
-            for at in range(start[i], start[i + 1]):
-                j = neighbour[at]
-                xu = xv = nu = nv = 0.0
-                weight = near
-                for axis in range(3):
-                    dx = fields[j, axis] - fields[i, axis]
-                    dn = fields[j, axis + 3] - fields[i, axis + 3]
-                    weight += dx * dx
-                    if scale > 0:
-                        dx += change[scale - 1, j, axis] - change[scale - 1, i, axis]
-                        dn += change[scale - 1, j, axis + 3] - change[scale - 1, i, axis + 3]
-                    xu, xv = xu + dx * u[axis], xv + dx * v[axis]
-                    nu, nv = nu + dn * u[axis], nv + dn * v[axis]
-                weight = unit / weight
+            for at in range(size):
+                weight, xu, xv = pairs[at, 0], pairs[at, 1], pairs[at, 2]
+                nu, nv = pairs[at, 3], pairs[at, 4]
+                if scale > 0:
+                    j = neighbour[begin + at]
+                    for axis in range(3):
+                        dx = change[scale - 1, j, axis] - change[scale - 1, i, axis]
+                        dn = change[scale - 1, j, axis + 3] - change[scale - 1, i, axis + 3]
+                        xu, xv = xu + dx * u[axis], xv + dx * v[axis]
+                        nu, nv = nu + dn * u[axis], nv + dn * v[axis]
                 pu, pv = weight * xu, weight * xv
                 cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
                 bxx, bxy, byy = bxx + nu * pu, bxy + 0.5 * (nu * pv + nv * pu), byy + nv * pv
@@ -241,33 +249,23 @@ def shape_operators(
 
 
 @compiled()
-def _extent(
-    start: IndexArray,
-    neighbour: IndexArray,
-    fields: FloatArray,
-    i: int,
-    u: Vector,
-    v: Vector,
-    unit: float,
-    near: float,
-) -> Vector:
-    """Return entries xx, xy, yy of the weighted sum of dx dx^T over an unsmoothed star."""
-    cxx = cxy = cyy = 0.0
-    for at in range(start[i], start[i + 1]):
-        j = neighbour[at]
-        xu = xv = 0.0
-        weight = near
-        for axis in range(3):
-            dx = fields[j, axis] - fields[i, axis]
-            weight += dx * dx
-            xu, xv = xu + dx * u[axis], xv + dx * v[axis]
-        weight = unit / weight
-        pu, pv = weight * xu, weight * xv
-        cxx, cxy, cyy = cxx + pu * xu, cxy + pu * xv, cyy + pv * xv
-    return cxx, cxy, cyy
+def _pair(
+    fields: FloatArray, i: int, j: int, u: Vector, v: Vector, unit: float, near: float
+) -> tuple[float, float, float, float, float]:
+    """Return the weight of an unsmoothed pair, and its dx and dN in the tangent plane."""
+    xu = xv = nu = nv = 0.0
+    weight = near
+    for axis in range(3):
+        dx = fields[j, axis] - fields[i, axis]
+        dn = fields[j, axis + 3] - fields[i, axis + 3]
+        weight += dx * dx
+        xu, xv = xu + dx * u[axis], xv + dx * v[axis]
+        nu, nv = nu + dn * u[axis], nv + dn * v[axis]
+    return unit / weight, xu, xv, nu, nv
 
 
 @compiled()
 def _least(xx: float, xy: float, yy: float) -> float:
     """Return the smaller eigenvalue of a symmetric tensor."""
-    return 0.5 * (xx + yy) - np.hypot(0.5 * (xx - yy), xy)
+    half = 0.5 * (xx - yy)
+    return 0.5 * (xx + yy) - np.sqrt(half * half + xy * xy)

@@ -8,7 +8,7 @@ from lutcore.cosmoothing import Surface
 from lutcore.laplacian import Laplacian
 
 # Wide against the longest scale that is tried on them, and little work against the whole mesh.
-_LEAST_PATCH, _LARGEST_PATCH, _PATCHES, _SEEDS = 4_000, 12_000, 3, 97
+_LEAST_PATCH, _LARGEST_PATCH, _PATCHES, _SEEDS = 3_000, 8_000, 3, 97
 _LEAST_STAR = 3
 
 
@@ -18,7 +18,7 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
     Parameters
     ----------
     on : Surface
-        A mesh of more vertices than the discs have together, 12,000.
+        A mesh of more vertices than the discs have together, 9,000.
 
     Returns
     -------
@@ -78,6 +78,6 @@ def _grow(
                     order[filled] = other
                     filled += 1
             at += 1
-        # A disc of 4,000 vertices has a radius of 36 spacings; its inner third ends 15 inside.
-        inner[first : first + max(1, (filled - first) // 3)] = True
+        # A disc of 3,000 vertices has a radius of 31 spacings; its inner quarter ends 15 inside.
+        inner[first : first + max(1, (filled - first) // 4)] = True
     return order[:filled], inner[:filled]
