@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -9,12 +10,21 @@ import pytest
 from tests.screen import start_screen
 
 os.environ.setdefault("QT_API", "pyside6")
+_PATIENCE = 60_000  # ms
 
 
 @pytest.fixture(scope="session", autouse=True)
 def screen() -> None:
     """A virtual screen of our own, whatever screen there is: tests must not depend on it."""
     start_screen()
+
+
+@pytest.fixture
+def qtbot(qtbot):
+    """pytest-qt's, with patience: on a busy machine what comes in the end is not wrong."""
+    for name in ("waitUntil", "waitSignal", "waitExposed"):
+        setattr(qtbot, name, partial(getattr(qtbot, name), timeout=_PATIENCE))
+    return qtbot
 
 
 @pytest.fixture(autouse=True)

@@ -1,12 +1,15 @@
 """Move the pointer of the screen, and know that the widget has heard of it."""
 
-from pytestqt.exceptions import TimeoutError as NotHeardError
+from collections.abc import Callable
+
+from pytestqt.exceptions import TimeoutError as NotYetError
 from qtpy.QtCore import QEvent, QObject, QPoint
 from qtpy.QtGui import QMouseEvent
 from qtpy.QtWidgets import QWidget
 
 _PATIENCE = 500  # ms a busy X server may take; then the move is made again
-_TRIES = 40
+_ANSWER = 10_000  # ms that what follows from the move may take until then
+_TRIES = 24
 
 
 class _Ear(QObject):
@@ -21,25 +24,27 @@ class _Ear(QObject):
         return False
 
 
-def move(qtbot, widget: QWidget, place: QPoint) -> None:
-    """Move the pointer there, and wait until the widget was told.
+def move(qtbot, widget: QWidget, place: QPoint, until: Callable[[], bool] | None = None) -> None:
+    """Move the pointer there, and wait until the widget was told, or for what follows from it.
 
-    QTest only moves the pointer of the X server, which tells the program when it has the time.
-    It makes one of several moves, and none of a way there and back: a pointer that is back where
-    Qt saw it last has not moved. So one that is not heard of is made again from beside it.
+    QTest only moves the pointer of the X server, which tells the program when it has the time. It
+    tells of several moves as of one, and of none that ends where Qt saw the pointer last; and that
+    the pointer left a widget whose size has changed may be told after it came. So a move without
+    effect is made again, from beside it.
     """
     ear = _Ear(widget)
+    done, patience = until or (lambda: ear.last == place), _ANSWER if until else _PATIENCE
     try:
         for _ in range(_TRIES):
             qtbot.mouseMove(widget, place)
             try:
-                qtbot.waitUntil(lambda: ear.last == place, timeout=_PATIENCE)
-            except NotHeardError:
+                qtbot.waitUntil(done, timeout=patience)
+            except NotYetError:
                 aside = 1 if place.x() < 2 else -1
                 qtbot.mouseMove(widget, place + QPoint(aside, 0))
                 continue
             return
-        raise AssertionError(f"no move to {place} arrived")
+        raise AssertionError(f"no move to {place} had an effect")
     finally:
         widget.removeEventFilter(ear)
         ear.deleteLater()

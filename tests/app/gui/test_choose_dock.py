@@ -90,8 +90,7 @@ def test_the_table_is_brushed_in_both_directions(window, qtbot) -> None:
     assert yellow.any()
     # From the mesh to the table.
     centre = QPoint(window.canvas.width() // 2, window.canvas.height() // 2)
-    move(qtbot, window.canvas, centre)
-    qtbot.waitUntil(lambda: len(plot.marks) == 3, timeout=240_000)
+    move(qtbot, window.canvas, centre, lambda: len(plot.marks) == 3)
     assert plot.marks[0] < plot.marks[2]  # red light goes farther
     qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=QPoint(left + 80, middle))
     settled(qtbot, window)

@@ -26,8 +26,7 @@ def _middle(window) -> QPoint:
 
 
 def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) -> None:
-    move(qtbot, window.canvas, _middle(window))
-    qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
+    move(qtbot, window.canvas, _middle(window), lambda: panel.probing.current is not None)
     found = panel.probing.current
     # The sphere has radius 10 mm, and its middle is seen from the front.
     assert found.values["k1"] == pytest.approx(0.1, rel=0.05)
@@ -44,8 +43,7 @@ def test_what_is_under_the_mouse_is_said_with_its_error(window, qtbot, panel) ->
 
 def test_the_mark_under_the_mouse_goes_with_the_panel(window, qtbot, panel) -> None:
     plain = pixels(window)
-    move(qtbot, window.canvas, _middle(window))
-    qtbot.waitUntil(lambda: panel.probing.current is not None, timeout=240_000)
+    move(qtbot, window.canvas, _middle(window), lambda: panel.probing.current is not None)
     settled(qtbot, window)
     assert (pixels(window) != plain).any()
     height = window.canvas.height()
