@@ -60,9 +60,9 @@ class CurvelightAccessor:
         Returns
         -------
         pyvista.PolyData
-            With k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness and
-            curvature_error, in 1/mesh unit: convex is positive, k1 >= k2; and curvature_scale,
-            mesh units.
+            With k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness,
+            curvature_error (of both), k1_error and k2_error, in 1/mesh unit: convex is positive,
+            k1 >= k2; and curvature_scale, mesh units.
 
         Raises
         ------

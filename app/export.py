@@ -30,7 +30,8 @@ def curvature_arrays(curvatures: PrincipalCurvatures, spread: FloatArray | None 
     -------
     dict of str to ndarray
         k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness,
-        curvature_error, in 1/mesh unit; curvature_scale, in mesh units; and
+        curvature_error (of both together), k1_error, k2_error, in 1/mesh unit; curvature_scale, in
+        mesh units; and
         curvature_disagreement where there is one.
     """
     arrays: Arrays = {
@@ -43,6 +44,8 @@ def curvature_arrays(curvatures: PrincipalCurvatures, spread: FloatArray | None 
         "shape_index": curvatures.shape_index,
         "curvedness": curvatures.curvedness,
         "curvature_error": curvatures.error,
+        "k1_error": curvatures.error1,
+        "k2_error": curvatures.error2,
         "curvature_scale": vertex_scales(curvatures).copy(),
     }
     return arrays if spread is None else arrays | {"curvature_disagreement": spread}

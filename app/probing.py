@@ -15,6 +15,8 @@ COLUMNS = (
     "z",
     "k1",
     "k2",
+    "k1_error",
+    "k2_error",
     "error",
     "mean",
     "gauss",
@@ -60,7 +62,8 @@ class Probe:
     position : tuple of 3 floats
         Mesh units.
     values : dict of str to float
-        By name of the quantity, as `app.quantities` says, in millimetres.
+        By name of the quantity, as `app.quantities` says, and the sigmas of k1 and of k2 alone,
+        k1_error and k2_error; in millimetres.
     readings : tuple of Reading
         One for each local model; empty where they were not asked for.
     """
@@ -144,6 +147,8 @@ def probe(session: Session, pipeline: Pipeline, vertex: int) -> Probe:
         for name, quantity in QUANTITIES.items()
         if quantity.attribute
     }
+    alone = {"k1_error": curvatures.error1, "k2_error": curvatures.error2}
+    values |= {name: float(bars[vertex]) / size for name, bars in alone.items()}
     x, y, z = (float(one) for one in subject.mesh.vertices[vertex])
     return Probe(session.mesh, vertex, (x, y, z), values)
 

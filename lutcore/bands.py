@@ -61,6 +61,9 @@ class Bands(NamedTuple):
         The part of a class's energy that is noise, where `room` is 1.
     left : ndarray, shape=(INTERIOR + 1, S)
         Noise of the curvature itself at each scale: that of its band and of all coarser ones.
+    lean : ndarray of float32, shape=(n,)
+        By how much k1 changes more than k2 in the coarsest band: the mean of half the difference
+        of their squared changes, 1/mesh unit squared; noise changes both alike.
     """
 
     energy: SingleArray
@@ -68,6 +71,7 @@ class Bands(NamedTuple):
     place: NDArray[np.int8]
     noise: FloatArray
     left: FloatArray
+    lean: SingleArray
 
 
 def bands(on: Surface, smoothed: Smoothed) -> Bands:
@@ -94,7 +98,7 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     for _ in range(_PASSES):
         _average(*links, energy, spare)
         energy, spare = spare, energy
-    room = np.clip(energy[:, count], *_ROOM)
+    room, lean = np.clip(energy[:, count], *_ROOM), energy[:, count + 1].copy()
     energy = np.ascontiguousarray(energy[:, :count])
     place = _places(start, neighbour, on.operator.rim)
     noise = _noise(energy, room, place, np.array(smoothed.scales) / on.spacing)
@@ -103,7 +107,7 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     left = (
         np.cumsum(noise[:, ::-1], axis=1)[:, ::-1] + (noise[:, -1] * ratio / (1 - ratio))[:, None]
     )
-    return Bands(energy, room, place, noise, left)
+    return Bands(energy, room, place, noise, left, lean)
 
 
 def _noise(
@@ -141,7 +145,7 @@ def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArr
 
 @compiled(parallel=True)
 def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: int) -> SingleArray:
-    """Return half the squared change of k1 and k2 from each scale to the next, then the areas.
+    """Return half the squared change of k1 and k2 from each scale to the next, areas, and lean.
 
     Filled up with zeros to a multiple of `together` columns.
 
@@ -149,7 +153,7 @@ def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: in
     principal frame, and by the one off it only where k1 and k2 are closer than it is large.
     """
     count, scales = tensors.shape[0], tensors.shape[1] - 1
-    energy = np.empty((count, together * (scales // together + 1)), np.float32)
+    energy = np.empty((count, together * ((scales + 1) // together + 1)), np.float32)
     for i in prange(count):
         energy[i, scales] = areas[i]
         for band in range(scales + 1, energy.shape[1]):
@@ -169,6 +173,8 @@ def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: in
             size = 4.0 * (along * along + across * across)
             mixed = size / (gap + size + 1e-300)
             energy[i, band] = mean * mean + along * along + mixed * across * across
+            if band == scales - 1:
+                energy[i, scales + 1] = 2.0 * mean * along
     return energy
 
 

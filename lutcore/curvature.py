@@ -29,12 +29,16 @@ class PrincipalCurvatures:
     normals : ndarray, shape=(n, 3)
         Outward unit normals at the scale of the estimate. Zero where a vertex has no face.
     error : ndarray, shape=(n,)
-        One sigma of k1 and k2, 1/mesh unit; infinite where nothing was estimated.
+        One sigma of k1 and k2 together: the root of their mean variance, 1/mesh unit; infinite
+        where nothing was estimated.
     scale : float or ndarray, shape=(n,)
         Length over which the surface was averaged, mesh units; 0 for one-ring methods.
     directed : bool
         Whether `d1` and `d2` are estimates. If not, they are some frame of the tangent plane:
         the method tells the values only.
+    lean : float or ndarray, shape=(n,)
+        How much of the variance is k1's: (s1^2 - s2^2)/(s1^2 + s2^2), -1 to 1; 0 where it is not
+        known.
     """
 
     k1: FloatArray
@@ -45,6 +49,17 @@ class PrincipalCurvatures:
     error: FloatArray
     scale: float | FloatArray
     directed: bool = True
+    lean: float | FloatArray = 0.0
+
+    @cached_property
+    def error1(self) -> FloatArray:
+        """One sigma of k1, 1/mesh unit."""
+        return self.error * np.sqrt(1.0 + self.lean)
+
+    @cached_property
+    def error2(self) -> FloatArray:
+        """One sigma of k2, 1/mesh unit."""
+        return self.error * np.sqrt(1.0 - self.lean)
 
     @cached_property
     def mean(self) -> FloatArray:

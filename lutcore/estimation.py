@@ -149,6 +149,7 @@ def _spread(welded: Welded, found: PrincipalCurvatures, unit: float) -> Principa
         error=welded.spread(found.error / unit, np.inf),
         scale=welded.spread(scale, 0.0) if isinstance(scale, np.ndarray) else scale,
         directed=found.directed,
+        lean=welded.spread(found.lean, 0.0) if isinstance(found.lean, np.ndarray) else found.lean,
     )
 
 

@@ -37,6 +37,8 @@ _DEARER = 1.3
 _SHARPNESS = 2
 # Vertices of which a median is taken: within .4 % of the ranks of all.
 _SAMPLE = 20_000
+# Of two squared errors the smaller is not less than a twentieth of both.
+_FULL = 0.9
 # Calibration: what the variances above must be multiplied by for one sigma to hold 68 % of the
 # vertices of noisy surfaces; near rims neighbours err alike and more.
 _CALIBRATION, _CALIBRATION_AT_RIM = 0.72, 1.5
@@ -108,7 +110,7 @@ def select(
         One value for each vertex, with the scale that was used there.
     """
     tell(progress, 0.0, "telling noise from bias")
-    tensors, square, cost, used, found = _chosen(on, smoothed, lengths, precision, steadiness)
+    tensors, square, cost, used, lean, found = _chosen(on, smoothed, lengths, precision, steadiness)
     typical = _typical_square(smoothed)
     rim = found.place <= _RIM
     jets = np.empty(0, np.int32)
@@ -123,6 +125,7 @@ def select(
     links = (on.operator.start, on.operator.neighbour)
     closed = used[weak] < 0.0
     borrow(*links, smoothed.normals, weak, closed, tensors, square, cost[weak])
+    lean[weak] = 0.0  # what they took over errs as it likes
     np.maximum(used, 0.0, out=used)
     few = specks(*links, np.flatnonzero(on.operator.rim).astype(np.int32))
     if len(few) < len(used):
@@ -136,7 +139,7 @@ def select(
         smoothed.normals, tensors, square, tilt_correction(on, smoothed), facets * on.spacing**2
     )
     return PrincipalCurvatures(
-        k[0], k[1], directions[0], directions[1], smoothed.normals, error, used
+        k[0], k[1], directions[0], directions[1], smoothed.normals, error, used, lean=lean
     )
 
 
@@ -164,7 +167,7 @@ def _chosen(
     lengths: FloatArray | float | None,
     precision: float,
     steadiness: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, Bands]:
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, Bands]:
     """Return what `_mix` does, and what it was judged by."""
     found = bands(on, smoothed)
     wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
@@ -199,21 +202,24 @@ def _mix(
     place: NDArray[np.int8],
     noise: FloatArray,
     left: FloatArray,
+    lean: SingleArray,
     scales: FloatArray,
     wanted: FloatArray,
     floor: float,
     steadiness: float,
     unknown: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return tensors, squared error bars, those with noise counted by `steadiness`, and scales.
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return tensors, squared error bars, those with noise counted by `steadiness`, scales, lean.
 
-    The scale is -1 where every star has closed.
+    The scale is -1 where every star has closed. For the lean see `PrincipalCurvatures`.
     """
     vertices, count = energy.shape
     mixed = np.zeros((vertices, 3))
     square = np.empty(vertices)
     cost = np.empty(vertices)
     used = np.empty(vertices)
+    leaning = np.zeros(vertices)
+    last = count - 1
     for i in prange(vertices):
         typical, rest = np.empty(count), np.empty(count)
         for j in range(count):
@@ -222,7 +228,10 @@ def _mix(
         calibration = _CALIBRATION if place[i] == INTERIOR else _CALIBRATION_AT_RIM
         errors = np.empty(count)
         steady = np.empty(count)
+        # What bias does to k1 more than to k2, over what it does to both; less where noise counts.
+        apart = lean[i] / max(energy[i, last], 1e-300)
         costs = np.empty(count)
+        biased = np.empty(count)
         best = np.inf
         lost = 0.0
         for j in range(count):
@@ -249,6 +258,7 @@ def _mix(
                 size = _square(tensors[i, max(j - 2, 1)])
                 errors[j] += min(_ROUND**2 * (size * scales[j] ** 2) ** 4, 100.0) * size
                 steady[j] = errors[j] + (steadiness - 1.0) * heard
+            biased[j] = errors[j] - heard
             if stretch[i, j] < _CLOSED or (j > 0 and stretch[i, j + 1] < _CLOSED):
                 errors[j] = steady[j] = np.inf
             costs[j] = max(steady[j], floor) * _DEARER**j
@@ -264,6 +274,7 @@ def _mix(
                 # Errors of nested scales are much the same one: they add up, not their squares.
                 square[i] += weight * np.sqrt(errors[j])
                 cost[i] += weight * np.sqrt(steady[j])
+                leaning[i] += weight * apart * biased[j]
                 used[i] += weight * scales[j]
                 for entry in range(3):
                     mixed[i, entry] += weight * tensors[i, j, entry]
@@ -272,6 +283,7 @@ def _mix(
             if place[i] == INTERIOR:
                 square[i] *= _JOINED
             cost[i] = (cost[i] / total) ** 2
+            leaning[i] = min(max(leaning[i] / total / max(square[i], 1e-300), -_FULL), _FULL)
             used[i] /= total
             for entry in range(3):
                 mixed[i, entry] /= total
@@ -281,7 +293,7 @@ def _mix(
                 mixed[i, entry] = tensors[i, 0, entry]
             # Nothing tells a flat speck from a curved one of the same size.
             square[i] = cost[i] = energy[i, 0] + _square(tensors[i, 0]) + unknown * unknown
-    return mixed, square, cost, used
+    return mixed, square, cost, used, leaning
 
 
 @compiled()

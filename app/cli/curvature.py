@@ -3,8 +3,8 @@
 .png is a picture; --quantity all draws every quantity in a panel of its own. .html is a report on
 one page to send to somebody: pictures, histograms, percentiles, error bars. .vtp, .ply, .csv and
 .npz hold k1, k2, d1, d2, mean_curvature, gauss_curvature, shape_index, curvedness,
-curvature_error, curvature_scale and, with --disagree, curvature_disagreement, in mesh units:
-convex is positive, k1 >= k2, the error is one sigma.
+curvature_error (of k1 and k2 together), k1_error, k2_error, curvature_scale and, with --disagree,
+curvature_disagreement, in mesh units: convex is positive, k1 >= k2, errors are one sigma.
 """
 
 import argparse

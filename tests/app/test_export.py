@@ -27,6 +27,8 @@ NAMES = {
     "shape_index",
     "curvedness",
     "curvature_error",
+    "k1_error",
+    "k2_error",
     "curvature_scale",
 }
 

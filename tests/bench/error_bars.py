@@ -96,14 +96,14 @@ def near_rim(mesh: TriangleMesh, found: PrincipalCurvatures) -> BoolArray:
 
 def judged(exact: Exact, found: PrincipalCurvatures, group: BoolArray) -> Row:
     """Return how wrong an estimate is on a group of vertices, and how often within its bars."""
-    truth, error = exact.truth, found.error[group]
+    truth, bars = exact.truth, (found.error1[group], found.error2[group])
     off = [np.abs(found.k1 - truth.k1)[group], np.abs(found.k2 - truth.k2)[group]]
     size = float(np.sqrt(np.mean(truth.k1**2 + truth.k2**2)))
     return {
         "vertices": float(np.count_nonzero(group)),
         "error": float(np.sqrt(np.mean(off[0] ** 2 + off[1] ** 2))) / size,
         **{
-            f"k{1 + which} within {sigmas}": float(np.mean(off[which] <= sigmas * error))
+            f"k{1 + which} within {sigmas}": float(np.mean(off[which] <= sigmas * bars[which]))
             for sigmas in (1, 2)
             for which in (0, 1)
         },

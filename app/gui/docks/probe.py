@@ -149,10 +149,11 @@ class ProbePanel(QSplitter):
         x, y, z = found.position
         self._add("vertex", str(found.vertex))
         self._add("position", f"{x:.6g}, {y:.6g}, {z:.6g}")
-        error = found.values["error"]
-        for name, value in found.values.items():
-            bar = f" \N{PLUS-MINUS SIGN} {error:.2g}" if name in ("k1", "k2") else ""
-            quantity = QUANTITIES[name]
+        for name, quantity in QUANTITIES.items():
+            if name not in found.values:
+                continue
+            value, error = found.values[name], found.values.get(f"{name}_error")
+            bar = "" if error is None else f" \N{PLUS-MINUS SIGN} {error:.2g}"
             self._add(
                 quantity.name, f"{value:.4g}{bar} {quantity.printed_unit if quantity.power else ''}"
             )
