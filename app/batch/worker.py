@@ -21,6 +21,7 @@ _NEEDED = (
     "app.failing",
     "numpy.ma",  # numba asks it of every array
     "PIL.PngImagePlugin",
+    "vtkmodules.vtkRenderingAnnotation",
     "vtkmodules.vtkRenderingFreeType",
     "vtkmodules.vtkRenderingOpenGL2",
 )
