@@ -59,8 +59,8 @@ def prepare() -> None:
     """Import and find out what every mesh needs; no thread is started, so that forks are safe."""
     for name in _NEEDED:
         import_module(name)
-    from app.record import versions
     from app.session import Session
+    from app.versions import versions
 
     versions(Session())
 
