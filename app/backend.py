@@ -65,6 +65,6 @@ def machine() -> str:
     str
         Such as ``Linux x86_64 znver4``.
     """
-    from llvmlite import binding  # type: ignore[import-untyped]
+    from llvmlite import binding
 
     return f"{platform.system()} {platform.machine()} {binding.get_host_cpu_name()}"

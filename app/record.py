@@ -1,42 +1,20 @@
 """What a picture says of its own making, as plain data: enough to make it again."""
 
 import hashlib
-import platform
-from collections.abc import Iterator
-from functools import cache
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from typing import Literal
 
 import msgspec
 
 from app.backend import Backend, machine
 from app.camera import axes
-from app.contestants import alone
 from app.picture import Picture
 from app.pipeline import Pipeline
 from app.render import Image
 from app.session import Camera, Session
 from app.settling import recorded, settled
 from app.transparency import without_need
+from app.versions import versions
 from lutcore.shading import AUTO
-
-MAKER = "curvelight"
-"""The package whose version says which program made a picture."""
-# Whatever a pixel can depend on beside the session, the mesh and the driver.
-_PACKAGES = (
-    MAKER,
-    "numpy",
-    "scipy",
-    "numba",
-    "llvmlite",
-    "vtk",
-    "matplotlib",
-    "pillow",
-    "colour-science",
-    "pymeshlab",
-    "libigl",
-    "trimesh",
-)
 
 
 class MeshFile(msgspec.Struct, frozen=True):
@@ -177,54 +155,6 @@ def pixels_digest(image: Image) -> str:
     image = without_need(image)
     height, width, _ = image.shape
     return hashlib.sha256(f"{width}x{height}:".encode() + image.tobytes()).hexdigest()
-
-
-def versions(session: Session) -> dict[str, str]:
-    """Return the versions that pixels depend on beside the mesh, the machine and the driver.
-
-    Parameters
-    ----------
-    session : Session
-        Plug-ins that it names may come from other packages.
-
-    Returns
-    -------
-    dict of str to str
-        By package; those that are not installed are left out.
-    """
-    return _installed() | dict(_outside(session))
-
-
-@cache
-def _installed() -> dict[str, str]:
-    """Return the versions of what is installed: asking takes 20 ms, and the answer stays."""
-    found = {"Python": platform.python_version()}
-    for package in _PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
-
-
-def _outside(session: Session) -> Iterator[tuple[str, str]]:
-    """Name the packages that the session's plug-ins come from, if it is not this one."""
-    parts = (session, *alone(session))
-    named = {
-        "curvelight.shading": [part.model for part in parts],
-        "curvelight.curvature": [*(part.estimator for part in parts), *session.peers],
-        "curvelight.profile": (session.profile,),
-    }
-    for group, methods in named.items():
-        wanted = {method.name for method in methods}
-        for entry in _entries(group):
-            if entry.name in wanted and entry.dist is not None:
-                yield entry.dist.name, entry.dist.version
-
-
-@cache
-def _entries(group: str) -> tuple[EntryPoint, ...]:
-    return tuple(entry_points(group=group))
 
 
 def elsewhere(then: Record, now: Record) -> str:

@@ -5,9 +5,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from app.provenance import PictureError
-from app.record import MAKER, Record
+from app.record import Record
 from app.samples import PREFIX
 from app.session import Session
+from app.versions import MAKER
 from lutcore.errors import ParameterError
 
 

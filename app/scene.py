@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkLight,
@@ -283,6 +282,8 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, floa
     pixels : tuple of 2 floats
         Width that there is for it, and height of the picture.
     """
+    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+
     size = font_size(scale.title or _LABELS, pixels)
     bar = vtkScalarBarActor()
     bar.SetLookupTable(_lookup(scale))

@@ -9,9 +9,10 @@ from app.likeness import THRESHOLD, Likeness, likeness
 from app.picture import render
 from app.pipeline import Pipeline
 from app.provenance import read_pixels, read_record
-from app.record import MAKER, Record, elsewhere, pixels_digest, record_of
+from app.record import Record, elsewhere, pixels_digest, record_of
 from app.redrawing import redrawing
 from app.render import Image
+from app.versions import MAKER
 
 _SHOWN = 12
 

@@ -19,7 +19,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 import numba
 from numba.core.runtime import rtsys
 
-from lutcore import cache, compiling
+from lutcore import cache, compiling, kept_code
 from lutcore.cache import sources
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -62,6 +62,7 @@ def _load_lightly(dispatcher: Any) -> None:
 
     def attempt(signature: Any, context: Any) -> Any:
         rtsys.initialize(context)
+        context.codegen()._library_class = kept_code.Library
         with cache._guard_against_spurious_io_errors():
             found = cache._load_overload(signature, context)
         if found is None:
@@ -69,6 +70,8 @@ def _load_lightly(dispatcher: Any) -> None:
             getting_ready()  # and the compiler does the rest itself
         return found
 
+    file = cache._cache_file
+    file._load_data = lambda name: kept_code.read(file._data_path(name))
     cache.load_overload = attempt
     dispatcher._compilation_chain_init_hook = _nothing
 

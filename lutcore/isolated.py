@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Mapping
 from pathlib import Path
+from typing import IO, Protocol
 
 import numpy as np
 
@@ -93,11 +94,11 @@ def run_isolated(
     """
     job = json.dumps({"function": function, "memory": memory})
     payload = pack({**arrays, JOB: np.array(job)})
-    child = _idle_or_new() if keep else Child()
+    child = _idle_or_new() if keep else Child(started())
     answer = child.call(payload, label, seconds, progress)
     if answer is None and child.calls > 1:
         child.stop()
-        child = Child()
+        child = Child(started())
         answer = child.call(payload, label, seconds, progress)
     if answer is None:
         words = child.last_words()
@@ -114,35 +115,68 @@ def run_isolated(
     return found
 
 
+class Process(Protocol):
+    """A process with pipes, as `subprocess.Popen` is one."""
+
+    pid: int
+    stdin: IO[bytes] | None
+    stdout: IO[bytes] | None
+    stderr: IO[bytes] | None
+
+    def wait(self) -> int:
+        """Wait for its end; return its exit code, or the negative number of a signal."""
+
+    def kill(self) -> None:
+        """End it, if it has not ended."""
+
+
+def started(
+    module: str = "lutcore.isolated_child",
+    environment: Mapping[str, str] | None = None,
+    stdin: int = subprocess.PIPE,
+) -> "subprocess.Popen[bytes]":
+    """Start a module of ours in a fresh interpreter.
+
+    Parameters
+    ----------
+    module : str
+        What it runs: for `Child`, a loop over `lutcore.isolated_child.receive` and ``send``.
+    environment : mapping of str to str, optional
+        Variables that it gets beside those of this process.
+    stdin : int
+        What it reads from: a pipe to this process, or an open file's number.
+
+    Returns
+    -------
+    Popen
+        The process.
+    """
+    # -P, so that a folder of our packages' names where the user stands is not taken for them.
+    command = [sys.executable, "-P", "-m", module]
+    paths = [str(_ROOT), *(entry for entry in sys.path if entry)]
+    # Each thread and each arena of the allocator reserves address space, which is limited.
+    few = {"OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
+    return subprocess.Popen(  # noqa: S603  # our own interpreter and module
+        command,
+        env=os.environ | few | dict(environment or {}) | {"PYTHONPATH": os.pathsep.join(paths)},
+        stdin=stdin,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+
+
 class Child:
     """One child process; its pipes carry a job to it and the answer back.
 
     Parameters
     ----------
-    module : str
-        What it runs: a loop over `lutcore.isolated_child.receive` and ``send``.
-    environment : mapping of str to str, optional
-        Variables that it gets beside those of this process.
+    process : Process
+        See `started`.
     """
 
-    def __init__(
-        self,
-        module: str = "lutcore.isolated_child",
-        environment: Mapping[str, str] | None = None,
-    ) -> None:
-        # -P, so that a folder of our packages' names where the user stands is not taken for them.
-        command = [sys.executable, "-P", "-m", module]
-        paths = [str(_ROOT), *(entry for entry in sys.path if entry)]
-        # Each thread and each arena of the allocator reserves address space, which is limited.
-        few = {"OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
+    def __init__(self, process: Process) -> None:
         self.calls = 0
-        self._process = subprocess.Popen(  # noqa: S603  # our own interpreter and module
-            command,
-            env=os.environ | few | dict(environment or {}) | {"PYTHONPATH": os.pathsep.join(paths)},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-        )
+        self._process = process
         self._said = b""
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
@@ -260,7 +294,7 @@ def _idle_or_new() -> Child:
     try:
         return _idle.pop()  # asking first whether there is one would race with other threads
     except IndexError:
-        return Child()
+        return Child(started())
 
 
 @atexit.register

@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 
 from app.batch.memory import resident
+from app.batch.nursery import Nursery
 from app.batch.task import COMPILING, Task
 from app.batch.worker import WARM
 from lutcore.errors import CancelledError
@@ -73,7 +74,7 @@ class Crew:
     """
 
     def __init__(self, environment: dict[str, str]) -> None:
-        self._environment = environment
+        self._nursery = Nursery(environment)
         self._mine = threading.local()
         self._all: set[Child] = set()
         self._lock = threading.Lock()
@@ -138,6 +139,7 @@ class Crew:
         for child in children:
             end(child)
             child.stop()
+        self._nursery.stop()
 
     def _go_on(self) -> None:
         if self._stopped:
@@ -148,7 +150,7 @@ class Crew:
         child: Child | None = getattr(self._mine, "child", None)
         if child is not None:
             return child
-        child = Child("app.batch.worker", self._environment)
+        child = Child(self._nursery.worker())
         with self._lock:
             self._all.add(child)
         self._go_on()

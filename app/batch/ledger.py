@@ -15,9 +15,9 @@ from msgspec.structs import replace
 
 from app.batch.plan import Item
 from app.batch.store import HIDDEN, Folder, Store, digest
-from app.record import versions
 from app.samples import PREFIX, sample
 from app.session import Session
+from app.versions import versions
 from app.volume import source_of
 
 Record = dict[str, Any]

@@ -3,6 +3,8 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.batch.ledger import DONE, Record, files_of, thumbnail
@@ -14,10 +16,12 @@ if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageFont import FreeTypeFont
 
-PNG = "contact.png"
+_PNG = "contact.png"
 _COLUMNS, _GAP = 3, 10
 _CELL = (THUMBNAIL[0] + 310, THUMBNAIL[1] + 2 * _GAP)
 _MOST_ROWS = 60  # of one picture: viewers give up at some 16,000 pixels
+PAGE = _COLUMNS * _MOST_ROWS
+"""Most meshes of one page."""
 _GROUND, _INK, _SOFT, _BAD = "#20242a", "#dde1e6", "#98a2ad", "#ff8a75"
 _LETTERS = 13
 _LINE = 17
@@ -99,21 +103,20 @@ def _mm(name: str, value: float | None, mm_per_unit: float) -> str:
     return "-" if value is None else f"{value / mm_per_unit ** QUANTITIES[name].power:.3g}"
 
 
-def write_png(store: Store, records: Sequence[Record]) -> None:
-    """Write the sheet as PNG, several of them if it is long, whole or not at all.
+def write_page(store: Store, number: int, records: Sequence[Record]) -> None:
+    """Write a page of the sheet as PNG, whole or not at all.
 
     Parameters
     ----------
     store : Store
         Where to; holds the pictures.
+    number : int
+        Which page, from 1.
     records : sequence of dict
-        Of the meshes.
+        Of its meshes, `PAGE` at most.
     """
-    shown = cells(records)
-    page = _COLUMNS * _MOST_ROWS
-    for number, start in enumerate(range(0, len(shown), page), 1):
-        name = PNG if number == 1 else PNG.replace(".", f"-{number}.")
-        store.write(name, _drawn(store, shown[start : start + page]))
+    name = _PNG if number == 1 else _PNG.replace(".", f"-{number}.")
+    store.write(name, _drawn(store, cells(records)))
 
 
 def _drawn(store: Store, shown: Sequence[Cell]) -> bytes:
@@ -156,16 +159,22 @@ def _small(store: Store, name: str) -> "Image | None":
 
 
 def _font(bold: bool) -> "FreeTypeFont":
-    from matplotlib import font_manager
     from PIL import ImageFont
 
-    weight = "bold" if bold else "normal"
-    found = font_manager.findfont(font_manager.FontProperties(family="DejaVu Sans", weight=weight))
-    return ImageFont.truetype(found, _LETTERS)
+    # Where matplotlib keeps it: importing matplotlib to be told takes a fifth of a second.
+    found = find_spec("matplotlib")
+    assert found is not None
+    assert found.origin is not None
+    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
+    place = Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / name
+    return ImageFont.truetype(place, _LETTERS)
 
 
 def _wrapped(text: str, font: "FreeTypeFont", width: int) -> list[str]:
     """Break text into lines, inside words where one is too long."""
+    whole = " ".join(text.split())
+    if font.getlength(whole) <= width:
+        return [whole] if whole else []
     lines: list[str] = []
     line = ""
     for word in text.split():

@@ -1,10 +1,11 @@
-"""The child process of a batch: draws one mesh after another until the other side has gone."""
+"""A worker of a batch: draws one mesh after another until the other side has gone."""
 
 import ctypes
 import os
 import signal
 import sys
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 import msgspec
@@ -15,20 +16,30 @@ from lutcore.isolated_child import receive, send
 WARM = b'"warm"'
 """The job of importing and loading what every mesh needs."""
 _PR_SET_PDEATHSIG = 1
+_NEEDED = (
+    "app.batch.drawing",
+    "app.failing",
+    "numpy.ma",  # numba asks it of every array
+    "PIL.PngImagePlugin",
+    "vtkmodules.vtkRenderingAnnotation",
+    "vtkmodules.vtkRenderingFreeType",
+    "vtkmodules.vtkRenderingOpenGL2",
+)
 
 
 def main() -> None:
     """Answer jobs."""
-    _detach()
+    detach()
     # What a library prints must not come between the bytes of an answer.
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    while (content := receive(sys.stdin.buffer)) is not None:
+    jobs = os.fdopen(0, "rb", closefd=False)
+    while (content := receive(jobs)) is not None:
         answer = _warm() if content == WARM else _answer(content)
         send(answers, memoryview(msgspec.json.encode(answer)))
 
 
-def _detach() -> None:
+def detach() -> None:
     """Leave Ctrl-C to the parent, but end with it, and leave no core dump."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "setsid"):
@@ -44,13 +55,20 @@ def _detach() -> None:
         resource.setrlimit(resource.RLIMIT_CORE, (0, hard))
 
 
-def _warm() -> dict[str, object]:
-    import vtkmodules.vtkRenderingFreeType
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+def prepare() -> None:
+    """Import and find out what every mesh needs; no thread is started, so that forks are safe."""
+    for name in _NEEDED:
+        import_module(name)
+    from app.session import Session
+    from app.versions import versions
 
-    import app.batch.drawing  # noqa: F401
+    versions(Session())
+
+
+def _warm() -> dict[str, object]:
     from app.offscreen import keep_window
 
+    prepare()
     keep_window()
     return {"ready": True}
 

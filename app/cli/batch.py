@@ -127,6 +127,7 @@ def run(arguments: argparse.Namespace) -> int:
     from app.batch import ledger, summary
     from app.batch.memory import watched
     from app.batch.plan import planned
+    from app.batch.sheet_pages import SheetPages
     from app.batch.store import opened
 
     jobs = _jobs(arguments)
@@ -146,15 +147,18 @@ def run(arguments: argparse.Namespace) -> int:
     store = opened(target)
     lines = ledger.Lines(store)
     found = _records(arguments, items, target, jobs)
-    try:
-        for record in found:
-            lines.add(record)
-            told.mesh(record)
-            if arguments.stop_on_error and record["reason"] != ledger.DONE:
-                break
-    finally:
-        found.close()
-        lines.write()
+    with SheetPages(store) as pages:
+        try:
+            for record in found:
+                lines.add(record)
+                pages.add(record)
+                told.mesh(record)
+                if arguments.stop_on_error and record["reason"] != ledger.DONE:
+                    break
+        finally:
+            found.close()
+            lines.write()
+        pages.end()
     _write_sheets(arguments, store, lines.records)
     return PARTLY if told.end(lines.records) else 0
 
@@ -182,11 +186,9 @@ def _records(
 
 def _write_sheets(arguments: argparse.Namespace, store: "Store", records: "list[Record]") -> None:
     from app.batch import summary
-    from app.batch.sheet import write_png
     from app.batch.sheet_page import write_html
 
     summary.write_csv(store, records)
     if arguments.parquet:
         summary.write_parquet(store, records)
-    write_png(store, records)
     write_html(store, records)

@@ -6,6 +6,7 @@ vertex colours that a picture adds).
 """
 
 import argparse
+from typing import TYPE_CHECKING
 
 from app.cli.options.mesh import add_mesh
 from app.cli.options.methods import add_curvature
@@ -14,7 +15,10 @@ from app.cli.options.session import session_from
 from app.cli.options.shading import add_shading
 from app.cli.performing import add_performing, perform
 from app.cli.work import Run
-from app.session import Session
+from app.session import Session, Settled
+
+if TYPE_CHECKING:
+    from lutcore.arrays import FloatArray
 
 
 def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
@@ -76,7 +80,6 @@ def _shade(work: Run) -> int:
     from app import export
     from lutcore.color import auto_exposure
     from lutcore.shading import AUTO
-    from lutcore.statistics import percentiles
 
     work.require(".png", ".vtp", ".ply", ".npz")
     warnings = work.warn()
@@ -91,8 +94,21 @@ def _shade(work: Run) -> int:
         exposure = exposure or auto_exposure(exitance)
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
-    seen, settled = work.pipeline.detail(work.session), work.settled(camera)
-    result = work.summary(warnings) | {
+    settled = work.settled(camera)
+    result = work.summary(warnings)
+    if work.arguments.json:  # else nobody would read it
+        result |= _told(work, settled, exposure, exitance)
+    chosen = f", shaded with {settled.label}" if work.session.model.name == AUTO else ""
+    return work.finish(result, f"wrote {work.output}{chosen}")
+
+
+def _told(
+    work: Run, settled: Settled, exposure: float | None, exitance: "FloatArray"
+) -> dict[str, object]:
+    from lutcore.statistics import percentiles
+
+    seen = work.pipeline.detail(work.session)
+    return {
         "material": work.pipeline.material(work.session).name,
         "profile": work.session.profile.name,
         "model": work.session.model.name,
@@ -105,5 +121,3 @@ def _shade(work: Run) -> int:
             for channel, name in enumerate(("red", "green", "blue"))
         },
     }
-    chosen = f", shaded with {settled.label}" if work.session.model.name == AUTO else ""
-    return work.finish(result, f"wrote {work.output}{chosen}")

@@ -67,7 +67,7 @@ class Subjects(Kept):
 
     @contextmanager
     def still(self) -> Iterator[None]:
-        """Take files as they are when first asked for: a picture asks for them two dozen times."""
+        """Take files as they are when first asked for: a picture asks for them dozens of times."""
         if self._read is not None:
             yield
             return

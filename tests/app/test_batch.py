@@ -89,7 +89,7 @@ def hashes(folder):
 
 
 def workers(folder):
-    """Return processes that draw for this folder's plug-in."""
+    """Return processes that draw for this folder's plug-in, and those they come from."""
     found = []
     for entry in os.listdir("/proc"):
         if entry.isdigit():
@@ -98,7 +98,7 @@ def workers(folder):
                 variables = Path(f"/proc/{entry}/environ").read_bytes()
             except OSError:
                 continue
-            if b"app.batch.worker" in words and str(folder).encode() in variables:
+            if b"app.batch." in words and str(folder).encode() in variables:
                 found.append(int(entry))
     return found
 

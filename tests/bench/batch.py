@@ -8,7 +8,6 @@ how a batch that is killed ten times and resumed compares to one that was left a
 
 import argparse
 import json
-import os
 import random
 import resource
 import subprocess
@@ -19,6 +18,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from tests.batches import CRASH, EAT, HANG, METHOD, broken, install, sheet
+from tests.bench import installed
 
 _SIDE = 70  # of a good sheet: 4,900 vertices
 _SIZE = (1024, 768)
@@ -159,7 +159,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         good = meshes(folder / "meshes", arguments.meshes)
-        variables = os.environ | install(folder / "plugin")
+        variables = installed.variables() | install(folder / "plugin")
         (folder / "job.toml").write_text(_JOB)
         (folder / "warm.toml").write_text(_JOB.replace("*.ply", "000.ply"))
         warm = [word.replace("job.toml", "warm.toml") for word in batch("warm")]

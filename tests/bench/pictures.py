@@ -18,6 +18,7 @@ import numpy as np
 
 from app.samples import sample
 from sample_meshes.ply import write_ply
+from tests.bench.installed import variables
 
 _RUNS = 3
 _PYVISTA = """
@@ -67,7 +68,11 @@ def run_once(arguments: list[str]) -> tuple[float, float]:
     )
     start = time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-c", probe, *arguments], capture_output=True, text=True, check=True
+        [sys.executable, "-c", probe, *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=variables(),
     )
     return time.perf_counter() - start, int(done.stderr.split()[-1]) / 1024.0
 
@@ -76,7 +81,8 @@ def measure(ours: Path, theirs: Path, out: Path) -> dict[str, tuple[float, float
     """Return the least time and memory of ours and of each peer, their runs taking turns."""
     commands = {"Curvelight": [_OURS, "shade", str(ours), "-o", str(out), "--quiet"]}
     commands |= {name: [code, str(theirs), str(out)] for name, code in _PEERS.items()}
-    subprocess.run([sys.executable, "-c", *commands["Curvelight"]], check=True)  # compile once
+    for command in commands.values():
+        run_once(command)  # compile once
     runs: dict[str, list[tuple[float, float]]] = {name: [] for name in commands}
     for _ in range(_RUNS):
         for name, command in commands.items():

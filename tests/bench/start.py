@@ -9,6 +9,8 @@ import subprocess
 import sys
 import time
 
+from tests.bench.installed import variables
+
 _RUNS = 7
 
 
@@ -17,7 +19,12 @@ def best(code: str, *arguments: str) -> float:
     times = []
     for _ in range(_RUNS):
         start = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, check=True)
+        subprocess.run(
+            [sys.executable, "-c", code, *arguments],
+            capture_output=True,
+            check=True,
+            env=variables(),
+        )
         times.append(time.perf_counter() - start)
     return min(times)
 

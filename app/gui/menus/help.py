@@ -135,7 +135,7 @@ def _shortcuts(window: "Window") -> None:
 
 
 def _about(window: "Window") -> None:
-    from app.record import versions
+    from app.versions import versions
 
     backend = window.canvas.backend
     lines = [f"{name} {version}" for name, version in versions(window.controller.session).items()]
