@@ -145,7 +145,7 @@ def _face(lights: FloatArray, light: int, points: FloatArray, towards: SingleArr
 @compiled()
 def _add(
     towards: SingleArray,
-    power: float,
+    power: np.float32,
     surface: SingleArray,
     kept: SingleArray,
     halfway: float,

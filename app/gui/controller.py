@@ -15,6 +15,7 @@ from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
 from app.session import Camera, Session, Settled
 from app.steps.subject import Subject
+from lutcore.compiling import compile_elsewhere
 from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 
@@ -108,6 +109,7 @@ class Controller:
     """Emitted with the `Standing` of long work, None when there is none."""
 
     def __init__(self, post: Post, session: Session | None = None) -> None:
+        compile_elsewhere()  # this process lives long, and its memory is to stay flat
         self.document = Document(session or Session())
         self.pipeline = Pipeline()
         """Used in the worker's thread only: see `run`."""
