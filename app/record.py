@@ -32,7 +32,6 @@ _PACKAGES = (
     "vtk",
     "matplotlib",
     "pillow",
-    "colour-science",
     "pymeshlab",
     "libigl",
     "trimesh",
