@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from app.gui.memory import give_back
 from lutcore.errors import CancelledError
 from lutcore.progress import Progress
 
@@ -54,6 +55,7 @@ class Worker:
     """
 
     _TELL = 0.1
+    _REST = 0.3  # s without a job, after which freed memory is given back
 
     def __init__(self, post: Post, standing: Callable[[Standing | None], None]) -> None:
         self.post, self._standing = post, standing
@@ -124,19 +126,28 @@ class Worker:
         self._thread.join(patience)
 
     def _work(self) -> None:
+        patience: float | None = None
         while True:
             with self._wake:
-                while not self._waiting and not self._ended:
-                    self._wake.wait()
+                asked = self._wake.wait_for(self._asked, patience)
                 if self._ended:
                     return
-                task = self._running = self._waiting.pop(next(iter(self._waiting)))
+                if asked:
+                    task = self._running = self._waiting.pop(next(iter(self._waiting)))
+            if not asked:
+                give_back()
+                patience = None
+                continue
+            patience = self._REST
             self._do(task)
             with self._wake:
                 self._running = None
                 idle = not self._waiting
             if idle:
                 self._say(None)
+
+    def _asked(self) -> bool:
+        return bool(self._waiting) or self._ended
 
     def _do(self, task: _Task[object]) -> None:
         self._say(Standing(0.0, "computing", 0.0))  # before the job says anything

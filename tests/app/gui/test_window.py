@@ -6,7 +6,6 @@ from qtpy.QtCore import QPoint, Qt
 
 from app.camera import axes
 from app.session import Camera, Session
-from lutcore.compiling import elsewhere
 from tests.app.gui.conftest import pixels, settled
 from tests.app.gui.mouse import move
 
@@ -81,8 +80,3 @@ def test_keys_undo_and_views(window, qtbot) -> None:
 def test_the_window_remembers_what_was_opened(open_window) -> None:
     window = open_window(Session(mesh="sample:sphere"))
     assert window.settings.recent[0] == "sample:sphere"
-
-
-def test_its_process_has_a_child_compile(window):
-    # What compiling leaves behind made its memory grow for hours.
-    assert elsewhere()
