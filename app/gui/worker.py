@@ -55,7 +55,8 @@ class Worker:
     """
 
     _TELL = 0.1
-    _REST = 0.3  # s without a job, after which freed memory is given back
+    # Freed memory is given back after so many s without a job, and after a job that took so long.
+    _REST, _LONG = 0.3, 1.0
 
     def __init__(self, post: Post, standing: Callable[[Standing | None], None]) -> None:
         self.post, self._standing = post, standing
@@ -138,8 +139,10 @@ class Worker:
                 give_back()
                 patience = None
                 continue
-            patience = self._REST
+            patience, start = self._REST, time.monotonic()
             self._do(task)
+            if time.monotonic() - start > self._LONG:
+                give_back()
             with self._wake:
                 self._running = None
                 idle = not self._waiting

@@ -2,8 +2,8 @@
 
 Random clicks, drags, keys and files on three meshes, one of them broken. Asked: no exception, the
 window's thread never away from its events for more than 1 s, memory flat within 10 % after the
-first 500 actions. Run a seed twice on a new machine: what is compiled in a run stays in its memory,
-what was compiled before does not.
+first 500 actions. What a model takes while it computes counts: one that gathers light from a whole
+mesh takes hundreds of MiB, so that a run that ends in it says more than what stays.
 """
 
 import argparse
