@@ -72,7 +72,9 @@ class Picture:
         return next(iter(self.ranges.values())) if len(self.ranges) == 1 else None
 
 
-def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> Composition:
+def compose(
+    session: Session, pipeline: Pipeline, held: float | None = None, drafted: bool = False
+) -> Composition:
     """Return what the picture of a session holds, all colours computed.
 
     Parameters
@@ -84,6 +86,9 @@ def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> 
     held : float, optional
         Exposure where the session leaves it open: while a light is dragged, one that follows it
         would flicker.
+    drafted : bool
+        Whether nearly the right colours are enough, for a light that is dragged; see
+        `Pipeline.exitance`.
 
     Returns
     -------
@@ -96,7 +101,7 @@ def compose(session: Session, pipeline: Pipeline, held: float | None = None) -> 
         If the mesh or a parameter does not allow it.
     """
     with pipeline.still():
-        return _Studio(session, pipeline, held).composition()
+        return _Studio(session, pipeline, held, drafted).composition()
 
 
 def render(session: Session, pipeline: Pipeline) -> Picture:
@@ -165,9 +170,12 @@ def _grid(session: Session) -> tuple[int, int]:
 class _Studio:
     """One session on its way to a picture."""
 
-    def __init__(self, session: Session, pipeline: Pipeline, held: float | None = None) -> None:
+    def __init__(
+        self, session: Session, pipeline: Pipeline, held: float | None, drafted: bool
+    ) -> None:
         self.session = session
         self.pipeline = pipeline
+        self.drafted = drafted
         self.subject: Subject = pipeline.subject(session)
         check(session)
         self.columns, self.rows = _grid(session)
@@ -225,7 +233,7 @@ class _Studio:
         """Show a model's light; a texture is drawn by the pixel."""
         if self.exposure is None:
             self.exposure = auto_exposure(self._linear(model))
-        light = self.pipeline.exitance(self.session, model, self.axes)
+        light = self.pipeline.exitance(self.session, model, self.axes, self.drafted)
         rgb = product_bytes(light, self._leaving(), self.exposure)
         facing = self.pipeline.facing(self.session)
         surface = Surface(self.subject.mesh, facing, rgb, caption=caption)
@@ -318,4 +326,5 @@ class _Studio:
         return singles
 
     def _studio(self, session: Session) -> "_Studio":
-        return _Studio(replace(session, camera=self.camera), self.pipeline)
+        placed = replace(session, camera=self.camera)
+        return _Studio(placed, self.pipeline, None, self.drafted)

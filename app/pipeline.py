@@ -9,6 +9,7 @@ from app.steps.scene import Scenes
 from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:
+    from lutcore.draft import Draft
     from lutcore.shading import ShadingModel
 
 
@@ -23,7 +24,9 @@ class Pipeline(Scenes):
         Told where long work stands; see `lutcore.progress`.
     """
 
-    def exitance(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
+    def exitance(
+        self, session: Session, model: Method, axes: FloatArray, drafted: bool = False
+    ) -> FloatArray:
         """Return the radiant exitance under a shading model.
 
         Parameters
@@ -34,6 +37,8 @@ class Pipeline(Scenes):
             The shading model.
         axes : ndarray, shape=(3, 3)
             The camera's axes, for lights that move with it.
+        drafted : bool
+            Whether nearly is enough, where a model has a quicker way and nothing casts a shadow.
 
         Returns
         -------
@@ -43,10 +48,12 @@ class Pipeline(Scenes):
         from app.settling import taken
 
         said = key_of(taken(session, self, model, axes))
-        key = ("exitance", session.shadows, said, *self.scene_key(session, model, axes))
-        return self.once(key, lambda: self._shade(session, model, axes))
+        key = ("exitance", drafted, session.shadows, said, *self.scene_key(session, model, axes))
+        return self.once(key, lambda: self._shade(session, model, axes, drafted))
 
-    def _shade(self, session: Session, model: Method, axes: FloatArray) -> FloatArray:
+    def _shade(
+        self, session: Session, model: Method, axes: FloatArray, drafted: bool
+    ) -> FloatArray:
         from dataclasses import replace
 
         from lutcore.shading import exitance
@@ -59,15 +66,17 @@ class Pipeline(Scenes):
             return exitance(settled, replace(inputs, visibility=shares))
 
         surface = self.surface_key(session)
+        draft = self.draft(session, settled, axes) if drafted and shares is None else None
 
         def lit(light: int) -> FloatArray:
-            key = (*surface, settled, inputs.lights[light].tobytes())
-            alone = replace(
-                inputs,
-                lights=inputs.lights[light : light + 1],
-                visibility=None if shares is None else shares[light : light + 1],
+            key = ("light", shares is None, draft is None, *surface, settled)
+            lights = inputs.lights[light : light + 1]
+            share = None if shares is None else shares[light : light + 1]
+            alone = replace(inputs, lights=lights, visibility=share)
+            return self.once(
+                (*key, lights.tobytes()),
+                lambda: exitance(settled, alone) if draft is None else draft.exitance(lights),
             )
-            return self.once(("light", shares is None, *key), lambda: exitance(settled, alone))
 
         # Light by light, so that where one is moved the others are there already.
         first, *others = (lit(light) for light in range(len(inputs.lights)))
@@ -75,6 +84,26 @@ class Pipeline(Scenes):
         for other in others:
             total = total + other
         return total
+
+    def draft(self, session: Session, settled: "ShadingModel", axes: FloatArray) -> "Draft | None":
+        """Return what shades a session nearly under other lights, where its model has such a way.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its model, lights and shadows is used.
+        settled : ShadingModel
+            What it is shaded with.
+        axes : ndarray, shape=(3, 3)
+            Of any camera.
+
+        Returns
+        -------
+        Draft or None
+            See `lutcore.shading.ShadingModel.draft`.
+        """
+        key = ("draft", *self.surface_key(session), settled)
+        return self.once(key, lambda: settled.draft(self.inputs(session, axes, settled.curved)))
 
     def settled(self, session: Session, model: Method, axes: FloatArray) -> "ShadingModel":
         """Return the model that a scene is shaded with, where `auto` leaves it open.

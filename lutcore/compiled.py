@@ -9,8 +9,9 @@ import os
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 # OpenMP's threads wait for the next loop by spinning, unless they are told to sleep before they
 # start. Where another program has a core, spinning costs a call of .04 s more than a second.
@@ -21,6 +22,9 @@ from numba.core.runtime import rtsys
 
 from lutcore import cache, compiling, kept_code
 from lutcore.cache import sources
+
+if TYPE_CHECKING:
+    from lutcore.compiler import Compiler
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -61,19 +65,33 @@ def _load_lightly(dispatcher: Any) -> None:
     cache, getting_ready = dispatcher._cache, dispatcher._compilation_chain_init_hook
 
     def attempt(signature: Any, context: Any) -> Any:
+        found = load(signature, context)
+        if found is None:
+            compiling.tell()
+            if compiling.elsewhere():
+                _compiler().compile(dispatcher.py_func, signature)
+                found = load(signature, context)
+        if found is None:
+            getting_ready()  # and the compiler does the rest itself
+        return found
+
+    def load(signature: Any, context: Any) -> Any:
         rtsys.initialize(context)
         context.codegen()._library_class = kept_code.Library
         with cache._guard_against_spurious_io_errors():
-            found = cache._load_overload(signature, context)
-        if found is None:
-            compiling.tell()
-            getting_ready()  # and the compiler does the rest itself
-        return found
+            return cache._load_overload(signature, context)
 
     file = cache._cache_file
     file._load_data = lambda name: kept_code.read(file._data_path(name))
     cache.load_overload = attempt
     dispatcher._compilation_chain_init_hook = _nothing
+
+
+@lru_cache(maxsize=1)
+def _compiler() -> "Compiler":
+    from lutcore.compiler import Compiler
+
+    return Compiler()
 
 
 def _nothing() -> None:

@@ -7,6 +7,7 @@ the same recurrence.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import prange
@@ -68,6 +69,11 @@ class Detail:
     widths: FloatArray
     scale: float
     smooth: FloatArray
+
+    @cached_property
+    def faced(self) -> bool:
+        """Whether any vertex has a face."""
+        return bool(self.smooth.any())
 
 
 def detail_seen(

@@ -25,6 +25,7 @@ from lutcore.progress import Progress, silent
 from lutcore.registry import Registry
 
 if TYPE_CHECKING:
+    from lutcore.draft import Draft
     from lutcore.prediction import Scene
 
 AUTO = "auto"
@@ -174,6 +175,21 @@ class ShadingModel(Parameters, ABC):
             alone = replace(inputs, normals=normals, shape=shape, detail=None)
             out[:, channel] = self.shade_channel(alone, channel)
         return out
+
+    def draft(self, inputs: ShadingInputs) -> "Draft | None":
+        """Return what shades the same surface nearly as well in a fraction of the time.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            Everything but lights and visibility.
+
+        Returns
+        -------
+        Draft or None
+            For a light that is dragged; None where there is no such way.
+        """
+        return None
 
     def predicted_error(self, scene: "Scene") -> FloatArray | None:
         """Predict how wrong the model will be, without running it.

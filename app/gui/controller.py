@@ -15,6 +15,7 @@ from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
 from app.session import Camera, Session, Settled
 from app.steps.subject import Subject
+from lutcore.compiling import compile_elsewhere
 from lutcore.errors import CurvelightError
 from lutcore.progress import Progress
 
@@ -41,6 +42,8 @@ _LIVE = {
     "wipe",
     "background",
 }
+# What may change while a surface stays ready to be shaded; see `lutcore.draft`.
+_OF_LIGHT = {"lights", "camera", "size", "exposure"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +75,9 @@ class Outcome:
 
 
 class _Held(NamedTuple):
-    """What stands still while something is dragged."""
+    """What stands still while something is dragged, and what it is dragged from."""
 
+    session: Session
     exposure: float | None
     settled: tuple[Settled, ...]
 
@@ -105,6 +109,7 @@ class Controller:
     """Emitted with the `Standing` of long work, None when there is none."""
 
     def __init__(self, post: Post, session: Session | None = None) -> None:
+        compile_elsewhere()  # this process lives long, and its memory is to stay flat
         self.document = Document(session or Session())
         self.pipeline = Pipeline()
         """Used in the worker's thread only: see `run`."""
@@ -266,18 +271,21 @@ class Controller:
     def begin_drag(self) -> None:
         """Make what follows one step of the history, under exposure and model of the picture shown.
 
-        What followed a light while it is dragged would flicker. `end_drag` has it found anew, so
-        that the still picture is that of the command line.
+        What followed a light while it is dragged would flicker, and colours are nearly right
+        sooner. `end_drag` has all of it found anew, so that the still picture is that of the
+        command line.
         """
         self.document.begin_drag()
         shown = self.outcome
-        self._held = _Held(shown.composition.exposure, shown.settled) if shown else None
+        self._held = (
+            _Held(shown.session, shown.composition.exposure, shown.settled) if shown else None
+        )
 
     def end_drag(self) -> None:
         """End what `begin_drag` began."""
         self.document.end_drag()
         held, self._held = self._held, None
-        if held and (held.settled or (held.exposure and self.session.exposure is None)):
+        if held and (held.settled or held.exposure):
             self.refresh()
 
     def run(
@@ -334,13 +342,15 @@ class Controller:
         from app.settling import recorded
 
         settled: tuple[Settled, ...] = ()
+        exposure = held.exposure if held else None
+        drafted = held is not None and _changed(session, held.session) <= _OF_LIGHT
         if held and held.settled and session.model.name == _AUTO and session.view != "compare":
             # To choose anew for each place of a light takes a second, and may flicker.
             settled = held.settled
             drawn = replace(session, model=settled[0].method)
-            made = compose(drawn, self.pipeline, held.exposure)
+            made = compose(drawn, self.pipeline, exposure, drafted)
         else:
-            made = compose(session, self.pipeline, held.exposure if held else None)
+            made = compose(session, self.pipeline, exposure, drafted)
             settled = recorded(session, self.pipeline, axes(made.camera)).settled
         return Outcome(
             session,
@@ -363,7 +373,7 @@ class Controller:
         seen.wait(_GREY)
 
     def _on_change(self, session: Session, before: Session) -> None:
-        changed = {name for name in Session.__struct_fields__ if _differ(session, before, name)}
+        changed = _changed(session, before)
         if changed and not (self.follows and self.follows(changed)):
             self.refresh(supersede=not changed <= _LIVE)
 
@@ -405,5 +415,6 @@ def message_of(error: Exception) -> str:
     return f"fault in the program: {type(error).__name__}: {error}"
 
 
-def _differ(one: Session, other: Session, name: str) -> bool:
-    return bool(getattr(one, name) != getattr(other, name))
+def _changed(one: Session, other: Session) -> set[str]:
+    names = Session.__struct_fields__
+    return {name for name in names if getattr(one, name) != getattr(other, name)}

@@ -27,7 +27,7 @@ class Contest:
     Parameters
     ----------
     computing : float
-        Of one light at all vertices.
+        Of one light at all vertices, as it is while it is dragged.
     vertex : float
         To send colours, and draw.
     pixel : float
@@ -75,12 +75,14 @@ def step_seconds(made: Composition, pipeline: Pipeline) -> float:
         return 0.0
     model = pipeline.settled(session, session.model, frame)
     inputs = pipeline.inputs(session, frame)
+    draft = pipeline.draft(session, model, frame)
     alone = replace(inputs, lights=inputs.lights[:1])
     factor = leaving(session, pipeline, made.camera)
     seconds = []
     for _ in range(_FRAMES):
         start = time.perf_counter()
-        product_bytes(exitance(model, alone), factor, made.exposure)
+        light = exitance(model, alone) if draft is None else draft.exitance(alone.lights)
+        product_bytes(light, factor, made.exposure)
         seconds.append(time.perf_counter() - start)
     return min(seconds)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from app.gui.memory import give_back
 from lutcore.errors import CancelledError
 from lutcore.progress import Progress
 
@@ -54,6 +55,8 @@ class Worker:
     """
 
     _TELL = 0.1
+    # Freed memory is given back after so many s without a job, and after a job that took so long.
+    _REST, _LONG = 0.3, 1.0
 
     def __init__(self, post: Post, standing: Callable[[Standing | None], None]) -> None:
         self.post, self._standing = post, standing
@@ -124,19 +127,30 @@ class Worker:
         self._thread.join(patience)
 
     def _work(self) -> None:
+        patience: float | None = None
         while True:
             with self._wake:
-                while not self._waiting and not self._ended:
-                    self._wake.wait()
+                asked = self._wake.wait_for(self._asked, patience)
                 if self._ended:
                     return
-                task = self._running = self._waiting.pop(next(iter(self._waiting)))
+                if asked:
+                    task = self._running = self._waiting.pop(next(iter(self._waiting)))
+            if not asked:
+                give_back()
+                patience = None
+                continue
+            patience, start = self._REST, time.monotonic()
             self._do(task)
+            if time.monotonic() - start > self._LONG:
+                give_back()
             with self._wake:
                 self._running = None
                 idle = not self._waiting
             if idle:
                 self._say(None)
+
+    def _asked(self) -> bool:
+        return bool(self._waiting) or self._ended
 
     def _do(self, task: _Task[object]) -> None:
         self._say(Standing(0.0, "computing", 0.0))  # before the job says anything

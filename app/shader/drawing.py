@@ -13,7 +13,7 @@ from app.camera import axes
 from app.session import Camera, Session, Vector
 from app.shader import glsl
 from app.shader.look import PixelLook, packed
-from app.shader.table import SingleArray
+from lutcore.response_table import SingleArray
 
 if TYPE_CHECKING:
     from lutcore.arrays import AnyArray

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 from app.shader.look import PixelLook
 from app.shader.packing import Packing
-from app.shader.table import BEND, COLUMNS, MOST, ROWS
 from lutcore.lights import LIGHT_FIELDS
+from lutcore.response_table import BEND, COLUMNS, MOST, ROWS
 
 EYE, EXPOSURE, LIGHTS = "glowEye", "glowExposure", "glowLights"
 """Uniforms that follow what moves; those of a look are in `PixelLook.numbers`."""

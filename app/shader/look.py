@@ -11,10 +11,10 @@ from app.lighting import world_lights
 from app.pipeline import Pipeline
 from app.session import Camera, Session
 from app.shader.packing import Packing
-from app.shader.table import SingleArray, halfway, response
 from app.shader.vertices import forms, rows, second
 from app.steps.subject import Subject
 from lutcore.arrays import FloatArray
+from lutcore.response_table import SingleArray, halfway, response
 
 if TYPE_CHECKING:
     from lutcore.lut import PsiTable
@@ -65,7 +65,7 @@ class PixelLook:
     numbers : dict of str to tuple of float
         Constants of the material and the model by the name of their uniform.
     table : ndarray of float32, or None
-        For ``curvature-lut``: see `app.shader.table.response`.
+        For ``curvature-lut``: see `lutcore.response_table.response`.
     """
 
     session: Session

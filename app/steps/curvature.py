@@ -69,7 +69,7 @@ class Measurements(Details):
         seen = self.detail(session)
         if seen is None or session.view == "curvature":
             return self.curvatures(session).normals
-        if not seen.smooth.any():
+        if not seen.faced:
             raise self._no_surface(session)
         return seen.smooth
 

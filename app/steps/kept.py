@@ -11,7 +11,7 @@ from lutcore.progress import Progress, silent
 T = TypeVar("T")
 # Of each kind of step, the last few results; a light that is dragged pushes out nothing else.
 _KEPT = 6
-_KEPT_OF = {"exitance": 8, "light": 8}
+_KEPT_OF = {"exitance": 8, "light": 8, "draft": 4}
 
 
 class Kept:

@@ -10,6 +10,7 @@ from lutcore.baking import samples_parameter
 from lutcore.compiled import compiled
 from lutcore.convexity import bending, invariants
 from lutcore.detail import Detail
+from lutcore.draft import Draft, draft
 from lutcore.fresnel import hinges_of
 from lutcore.lights import is_directional, light_at
 from lutcore.lut import BLOCK, PsiTable, even_forms
@@ -59,6 +60,18 @@ class CurvatureLut(ShadingModel):
         fit = hinges_of(table.eta, self.hinges)
         arguments = (inputs.points, normals, shape, inputs.lights)
         return _exitance(*arguments, *fit, *_constants(table, self.area))
+
+    def draft(self, inputs: ShadingInputs) -> Draft:
+        """Prepare the surface for a light that is dragged; see `ShadingModel.draft`."""
+        seen, table = inputs.detail, inputs.baked(self.samples)
+        normals = inputs.normals[None] if seen is None else seen.normals
+        shape = inputs.shape[None] if seen is None else seen.shape
+        total, area, *_ = _constants(table, self.area)
+        plain, mixed = (np.square(one).sum(axis=2) for one in (shape[..., :3], shape[..., 3:]))
+        second = 2.0 * (plain + 2.0 * mixed) + np.square(shape[..., :3].sum(axis=2))
+        kept = total[:, None] / (1.0 + area[:, None] * second)
+        fit = hinges_of(table.eta, self.hinges)
+        return draft(inputs.points, normals, shape, kept, table, fit)
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""

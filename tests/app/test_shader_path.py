@@ -13,7 +13,6 @@ from app.render import fill, grab
 from app.session import Camera, Cone, Directional, Method, Point, Session, Substance
 from app.shader.drawing import PixelLight
 from app.shader.look import MOST_LIGHTS, look_of, unsupported
-from app.shader.table import BEND, COLUMNS, MOST, ROWS, halfway, response
 from app.shader.vertices import forms
 from lutcore.baking import bake
 from lutcore.color import srgb_encode
@@ -21,6 +20,7 @@ from lutcore.convexity import bending, convex_part
 from lutcore.fresnel import hinges_of
 from lutcore.lut import even_forms
 from lutcore.materials import materials
+from lutcore.response_table import BEND, COLUMNS, MOST, ROWS, halfway, response
 
 LIGHTS = (
     Directional((0.9, 0.3, 0.3), (1.0, 0.9, 0.8), "camera"),

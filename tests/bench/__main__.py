@@ -5,6 +5,7 @@ import sys
 
 SCRIPTS = (
     "start",
+    "opening",
     "first_call",
     "shading_accuracy",
     "shading_truth",

@@ -73,7 +73,7 @@ class Ours:
         x, y, z = first.direction
         moved = replace(first, direction=(x, y + 0.01 * step, z))
         session = replace(self.session, lights=(moved, *others), camera=self.made.camera)
-        made = compose(session, self.pipeline, self.made.exposure)
+        made = compose(session, self.pipeline, self.made.exposure, drafted=True)
         recolor(self.drawn[0].actor, made.panels[0].content)
 
 

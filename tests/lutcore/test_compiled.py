@@ -82,6 +82,33 @@ def test_the_user_is_told_once_when_something_has_to_be_compiled(tmp_path):
     assert said == [["compiling"], []]
 
 
+_ELSEWHERE = (
+    "import sys, lutcore.topology, numpy;"
+    "from lutcore.compiling import compile_elsewhere;"
+    "compile_elsewhere();"
+    "rows = numpy.array([[0, 2], [1, 2]]);"
+    "found = [lutcore.topology.components(rows.astype(t), 4)[0] for t in (numpy.int32, 'i8')];"
+    "print(*found, 'numba.np.arraymath' in sys.modules)"
+)
+
+
+def test_a_child_compiles_where_it_is_asked_for_and_keeps_it_for_all(tmp_path):
+    environment = {**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-c", _ELSEWHERE]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2", "2", "False"]
+    assert list(tmp_path.rglob("joining.*.nbc"))
+
+
+def test_what_a_child_cannot_keep_is_compiled_here(tmp_path):
+    full = "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+    full += "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100));"
+    environment = {**os.environ, "CURVELIGHT_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-c", full + _ELSEWHERE]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2", "2", "True"]
+
+
 def test_kept_code_is_loaded_without_what_compiles_and_more_can_be_compiled_after(tmp_path):
     code = (
         "import sys, lutcore.topology, numpy;"

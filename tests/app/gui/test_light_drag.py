@@ -77,6 +77,38 @@ def test_exposure_stands_still_in_a_drag_and_is_the_command_lines_after_it(qtbot
     )
 
 
+def test_colours_are_nearly_right_in_a_drag_and_exact_after_it(qtbot, view):
+    view.controller.change("exposure", exposure=1.0)
+    settled(qtbot, view)
+    start = handle(view, 0)
+    QTest.mousePress(view.canvas, LEFT, pos=start)
+    move(qtbot, view.canvas, start + QPoint(-20, 5))
+    settled(qtbot, view)
+    exact, shown = _colours(view)
+    assert 0 < np.abs(exact - shown).max() <= 1
+    QTest.mouseRelease(view.canvas, LEFT, pos=start + QPoint(-20, 5))
+    settled(qtbot, view)
+    exact, shown = _colours(view)
+    np.testing.assert_array_equal(exact, shown)
+
+
+def _colours(view):
+    outcome = view.controller.outcome
+    made = compose(outcome.session, Pipeline()), outcome.composition
+    return [one.panels[0].content.rgb.astype(int) for one in made]
+
+
+def test_a_material_that_is_dragged_is_shaded_exactly(qtbot, view):
+    view.controller.begin_drag()
+    view.controller.change("material", material="skin2")
+    settled(qtbot, view)
+    held = view.controller.outcome.composition.exposure
+    made = compose(view.controller.outcome.session, Pipeline(), held)
+    np.testing.assert_array_equal(made.panels[0].content.rgb, _colours(view)[1])
+    view.controller.end_drag()
+    settled(qtbot, view)
+
+
 def test_a_drag_is_one_step_however_long_it_takes(qtbot, view, monkeypatch):
     monkeypatch.setattr("app.gui.document._ONE_STEP", 0.0)
     before = view.controller.session.lights
