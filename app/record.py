@@ -30,6 +30,7 @@ _PACKAGES = (
     "vtk",
     "matplotlib",
     "pillow",
+    "colour-science",
     "pymeshlab",
     "libigl",
     "trimesh",

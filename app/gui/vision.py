@@ -12,40 +12,34 @@ from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:
     from app.composition import Composition
+    from app.gui.controller import Controller
     from app.render import Panel
 
 KINDS = {
-    "protanopia": (
-        (0.152286, 1.052583, -0.204868),
-        (0.114503, 0.786281, 0.099216),
-        (-0.003882, -0.048116, 1.051998),
-    ),
-    "deuteranopia": (
-        (0.367322, 0.860646, -0.227968),
-        (0.280085, 0.672501, 0.047413),
-        (-0.011820, 0.042940, 0.968881),
-    ),
-    "tritanopia": (
-        (1.255528, -0.076749, -0.178779),
-        (-0.078411, 0.930809, 0.147602),
-        (0.004733, 0.691367, 0.303900),
-    ),
+    "protanopia": "Protanomaly",
+    "deuteranopia": "Deuteranomaly",
+    "tritanopia": "Tritanomaly",
 }
-"""What can be previewed: no red, green or blue cones, and how it mixes linear RGB.
-
-Machado, Oliveira and Fernandes, A Physiologically-based Model for Simulation of Color Vision
-Deficiency, 2009, table of severity 1; for tritanopia an approximation."""
+"""What can be previewed: no red, green or blue cones; colour-science's name, at full strength."""
 
 
 class Vision:
-    """Shows the colours of a scale as somebody else sees them."""
+    """Shows the colours of a scale as somebody else sees them.
+
+    Parameters
+    ----------
+    controller : Controller
+        Of the window.
+    """
 
     changed = Signal()
     """Emitted when other colours are to be shown."""
 
-    def __init__(self) -> None:
+    def __init__(self, controller: "Controller") -> None:
+        self._controller = controller
         self.kind = ""
         """A key of `KINDS`, empty for colours as they are."""
+        self._matrix: FloatArray | None = None
 
     def choose(self, kind: str) -> None:
         """Preview a deficiency, or none.
@@ -56,7 +50,8 @@ class Vision:
             A key of `KINDS`, or empty.
         """
         self.kind = kind
-        self.changed.emit()
+        # The first time a large package is imported.
+        self._controller.run("vision", lambda _: matrix(kind) if kind else None, self._take)
 
     def seen(self, made: "Composition") -> "Composition":
         """Return a composition in the colours that are seen.
@@ -71,10 +66,14 @@ class Vision:
         Composition
             The same where nothing is previewed; shading stays as it is.
         """
-        if not self.kind:
+        found = self._matrix
+        if found is None:
             return made
-        found = matrix(self.kind)
         return replace(made, panels=tuple(_panel(one, found) for one in made.panels))
+
+    def _take(self, found: FloatArray | None) -> None:
+        self._matrix = found
+        self.changed.emit()
 
 
 def matrix(kind: str) -> FloatArray:
@@ -90,7 +89,13 @@ def matrix(kind: str) -> FloatArray:
     ndarray, shape=(3, 3)
         Of Machado et al. 2009, at full strength.
     """
-    return np.array(KINDS[kind])
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that its tritanomaly is an approximation
+        from colour.blindness import matrix_cvd_Machado2009
+
+        return np.asarray(matrix_cvd_Machado2009(KINDS[kind], 1.0), dtype=np.float64)
 
 
 def simulated(encoded: FloatArray, found: FloatArray) -> FloatArray:

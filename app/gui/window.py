@@ -76,7 +76,7 @@ class Window(QMainWindow):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.banner)
-        self.vision = Vision()
+        self.vision = Vision(self.controller)
         self.units = Units(self.controller, self.settings)
         self.unit_bar = UnitBar(middle, self.units)
         column.addWidget(self.unit_bar)
