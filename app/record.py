@@ -16,27 +16,6 @@ from app.transparency import without_need
 from app.versions import versions
 from lutcore.shading import AUTO
 
-<<<<<<< HEAD
-=======
-MAKER = "curvelight"
-"""The package whose version says which program made a picture."""
-# Whatever a pixel can depend on beside the session, the mesh and the driver.
-_PACKAGES = (
-    MAKER,
-    "numpy",
-    "scipy",
-    "numba",
-    "llvmlite",
-    "vtk",
-    "matplotlib",
-    "pillow",
-    "colour-science",
-    "pymeshlab",
-    "libigl",
-    "trimesh",
-)
-
->>>>>>> h-five
 
 class MeshFile(msgspec.Struct, frozen=True):
     """The mesh that was drawn.

@@ -6,7 +6,7 @@ from typing import Any
 
 from numba.core.serialize import dumps
 
-from lutcore.isolated import Child
+from lutcore.isolated import Child, started
 from lutcore.progress import silent
 
 _LONGEST = 1200.0  # seconds for one function and all that it calls, on a machine under load
@@ -43,7 +43,7 @@ class Compiler:
         with self._using:
             if self._end is not None:
                 self._end.cancel()
-            child, self._child = self._child or Child("lutcore.compiler_child"), None
+            child, self._child = self._child or Child(started("lutcore.compiler_child")), None
             if child.call(job, "the compiler", _LONGEST, silent) is None:
                 child.stop()
                 return
