@@ -79,8 +79,9 @@ def _join(
     certainty = np.zeros(len(weak))
     now = np.empty((len(weak), 7))
     for w in range(len(weak)):
-        measured[w] = np.array(in_space(normals[weak[w]], tensors[weak[w]]))
-        now[w, :6] = measured[w]
+        own = in_space(normals[weak[w]], tensors[weak[w]])
+        for entry in range(6):
+            measured[w, entry] = now[w, entry] = own[entry]
         now[w, 6] = square[weak[w]]
         if not closed[w]:
             certainty[w] = 1.0 / max(doubt[w], 1e-30)
@@ -209,12 +210,22 @@ def _differences(
         if number[i] >= 0:
             continue
         total, pairs = 0.0, 0
-        own = np.array(in_space(normals[i], tensors[i]))
+        own = in_space(normals[i], tensors[i])
         for at in range(start[i], start[i + 1]):
             j = neighbour[at]
             if number[j] < 0:
-                d = np.array(in_space(normals[j], tensors[j])) - own
-                xx, xy, yy = in_tangent_plane(normals[i], d)
+                there = in_space(normals[j], tensors[j])
+                xx, xy, yy = in_tangent_plane(
+                    normals[i],
+                    (
+                        there[0] - own[0],
+                        there[1] - own[1],
+                        there[2] - own[2],
+                        there[3] - own[3],
+                        there[4] - own[4],
+                        there[5] - own[5],
+                    ),
+                )
                 total += 0.5 * (xx * xx + yy * yy) + xy * xy
                 pairs += 1
         if pairs > 0:

@@ -171,14 +171,16 @@ def _entry(tensor: FloatArray | Vector, u: Vector, v: Vector, a: int, b: int) ->
 
 
 @compiled()
-def in_tangent_plane(normal: FloatArray, t: FloatArray) -> tuple[float, float, float]:
+def in_tangent_plane(
+    normal: FloatArray, t: FloatArray | tuple[float, ...]
+) -> tuple[float, float, float]:
     """Return the tangent part of a tensor of space.
 
     Parameters
     ----------
     normal : ndarray, shape=(3,)
         Unit normal.
-    t : ndarray, shape=(6,)
+    t : ndarray, shape=(6,), or tuple of 6 floats
         Entries xx, xy, xz, yy, yz, zz.
 
     Returns
@@ -191,7 +193,7 @@ def in_tangent_plane(normal: FloatArray, t: FloatArray) -> tuple[float, float, f
 
 
 @compiled()
-def _between(t: FloatArray, p: Vector, q: Vector) -> float:
+def _between(t: FloatArray | tuple[float, ...], p: Vector, q: Vector) -> float:
     return (
         t[0] * p[0] * q[0]
         + t[1] * (p[0] * q[1] + p[1] * q[0])
