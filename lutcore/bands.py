@@ -31,8 +31,8 @@ _TOGETHER = 4
 _NONE = 1e-30
 # Bounds of the areas over their median that noise follows.
 _ROOM = (0.125, 8.0)
-# Vertices that vote on the noise of a class: their quartile is within 1 % of the ranks.
-_VOTERS = 2_000
+# Vertices that vote on the noise of a class: their quartile is within .7 % of the ranks.
+_VOTERS = 4_000
 # The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
 # here, the 25th percentile is this share of the mean.
 _QUARTER, _QUARTER_OF_MEAN = 25.0, 0.7
