@@ -184,7 +184,8 @@ def _convex_part(
     """Write S+ from tensors in the `tangent_frame` of the normals."""
     for i in prange(len(normals)):
         xx, xy, yy = tensors[i, 0], tensors[i, 1], tensors[i, 2]
-        middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
+        half = 0.5 * (xx - yy)
+        middle, radius = 0.5 * (xx + yy), np.sqrt(half * half + xy * xy)
         high, low = max(middle + radius, 0.0), max(middle - radius, 0.0)
         # S+ = low 1 + (high - low)/(2 radius) (S - (middle - radius) 1)
         turned = 0.5 * (high - low) / radius if radius > 0.0 else 0.0

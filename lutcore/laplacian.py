@@ -122,10 +122,15 @@ def _rates(
 ) -> tuple[NDArray[np.float32], BoolArray]:
     on_rim = np.empty(len(vertices), np.bool_)
     rate = np.empty(start[-1], np.float32)
+    widest = 0
+    for vertex in range(len(vertices)):
+        widest = max(widest, start[vertex + 1] - start[vertex])
     for vertex in prange(len(vertices)):
         first, last = start[vertex], start[vertex + 1]
-        weight = np.zeros(last - first)
-        faces_at = np.zeros(last - first, np.int32)
+        # Of one size, so that a thread makes them once and not for every vertex.
+        weight, faces_at = np.empty(widest), np.empty(widest, np.int32)
+        for j in range(last - first):
+            weight[j], faces_at[j] = 0.0, 0
         for at in range(corner_start[vertex], corner_start[vertex + 1]):
             after, before = other_two(faces, corner[at])
             slot = slot_of(neighbour, first, last, after) - first
@@ -152,7 +157,9 @@ def _rates(
         else:
             for j in range(last - first):
                 weight[j] = min(max(weight[j], _LEAST_WEIGHT), _LARGEST_WEIGHT)
-        total = weight.sum()
+        total = 0.0
+        for j in range(last - first):
+            total += weight[j]
         # Rows above the cap get a larger mass: slower there, stable everywhere.
         mass = max(mass, total / cap)
         for j in range(last - first):
