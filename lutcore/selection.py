@@ -283,6 +283,7 @@ def _mix(
             if place[i] == INTERIOR:
                 square[i] *= _JOINED
             cost[i] = (cost[i] / total) ** 2
+            # Joining scales takes from noise, not from bias: its share is of what is left.
             leaning[i] = min(max(leaning[i] / total / max(square[i], 1e-300), -_FULL), _FULL)
             used[i] /= total
             for entry in range(3):
