@@ -30,9 +30,9 @@ STAGES = (1024, 4096, 16384)
 CONFIDENCE = 0.99
 """That a model which is taken meets the tolerance, all stages together."""
 
-# The gathered light errs by half of what it is allowed at the 99th percentile, on the sample scan:
-# by 2 % of the tolerance.
-_REFERENCE = 1.0 / 25.0
+# The gathered light errs by a third of what it is allowed at the 99th percentile, on the sample
+# scan: by .7 % of the tolerance.
+_REFERENCE = 1.0 / 50.0
 _FINEST, _COARSEST = 1e-4, 5e-3
 # Of the tolerance, what a border may take of the light where the truth is to be known.
 _LOST = 0.25

@@ -1,4 +1,4 @@
-"""A diffusion profile as a table over distance, and how large a cluster may be at each.
+"""A diffusion profile as a table over distance, and how fast it bends beyond each.
 
 The table is cubic in v = r^2 + r_0^2 between knots that divide each octave of v into 16, so that a
 knot is found from the bits of v, without a root and without a logarithm. r_0 is a thousandth of
@@ -20,23 +20,29 @@ _EVERY = 1 << (_FINE_BITS - _BITS)
 _FRACTION = 2.0**-_SHIFT
 _MASK = (1 << _SHIFT) - 1
 _INNER = 1e-3
-# Sizes are found by bisection, to 1 %.
-_STEPS = 24
+# What differences of rounded values make of the third derivative is below this share of R/r^3.
+_ROUNDED = 1e-4
 # Cosines between a step and the line of sight for which the third derivative is bounded.
 _COSINES = (0.25, 0.5, 0.75, 1.0)
 
 
 class Kernel(NamedTuple):
-    """R(r) of three channels, and the largest cluster that may stand for its parts.
+    """R(r) of three channels, and what a group of light at a distance may be off by.
 
     Parameters
     ----------
-    rows : ndarray, shape=(k, 3, 4)
-        Coefficients of 1, f, f^2, f^3 of R between a knot and the next, f = 0..1, 1/mm^2.
+    rows : ndarray, shape=(k, 4, 4)
+        Coefficients of 1, f, f^2, f^3 of R between a knot and the next, f = 0..1, 1/mm^2. Each of
+        three channels, and a fourth of 0: vector instructions take four.
     per_step : ndarray, shape=(k,)
         df/dv, 1/mm^2.
-    allowed : ndarray, shape=(k,)
-        Largest square of a cluster's radius between a knot and the next, mm^2.
+    bend : ndarray, shape=(k, 4)
+        A sixth of the largest third derivative of R at a knot or beyond, over the error that a
+        group may have: times the integral of its light times the cube of the distance to its
+        centre that is 1 at most where it may stand for its parts, 1/(mm^5 irradiance). The fourth
+        is the largest.
+    distance : ndarray, shape=(k,)
+        r of the knots, mm.
     inner : float
         r_0^2, mm^2, a power of 2.
     first : int
@@ -45,7 +51,8 @@ class Kernel(NamedTuple):
 
     rows: FloatArray
     per_step: FloatArray
-    allowed: FloatArray
+    bend: FloatArray
+    distance: FloatArray
     inner: float
     first: int
 
@@ -110,63 +117,43 @@ def radial(profile: DiffusionProfile, material: Material, diameter: float) -> Ra
     # 12 r c f'' + 8 (r c)^3 f'''.
     r, jerk = np.sqrt(square)[:, None], np.gradient(second, v, axis=0)
     bounds = [np.abs(12.0 * c * r * second + 8.0 * (c * r) ** 3 * jerk) for c in _COSINES]
-    third = np.maximum.accumulate(np.max(bounds, axis=0)[::-1], axis=0)[::-1]
+    here = np.max(bounds, axis=0)
+    here[here * (v**1.5)[:, None] < _ROUNDED * values] = 0.0
+    third = np.maximum.accumulate(here[::-1], axis=0)[::-1]
     return Radial(v, values, slopes, third)
 
 
-def kernel(table: Radial, tolerance: float, floor: FloatArray) -> Kernel:
-    """Find how large a cluster may be at each distance.
+def kernel(table: Radial, error: FloatArray) -> Kernel:
+    """Prepare a profile for sums over groups of light.
 
-    A cluster of power W and radius s at the distance r, known by its power and its first and
-    second moment, is off by at most W s^3/6 times the largest third derivative of R between r - s
-    and r + s; its true value is at least W R(r + s). All are positive, so that what holds for each
-    of them holds for their sum.
+    A group of light known by its moments up to the second about a centre, at the distance r from
+    it and of radius s, is off by at most a sixth of its third moment times the largest third
+    derivative of R at the distance r - s or beyond.
 
     Parameters
     ----------
     table : Radial
         The profile.
-    tolerance : float
-        Largest error of a cluster relative to itself plus its power times `floor`.
-    floor : ndarray, shape=(3,)
-        A value of R that is too small to matter, 1/mm^2.
+    error : ndarray, shape=(3,)
+        What a group may be off by, radiant exitance; 0 for a channel without light.
 
     Returns
     -------
     Kernel
-        The table with the sizes.
+        The table.
     """
-    inner, log_v = float(table.v[0]), np.log(table.v)
-    v = table.v[::_EVERY]
-    r = np.sqrt(v - inner)
-
-    def fits(size: FloatArray, channel: int) -> FloatArray:
-        nearest = np.log(np.square(np.maximum(r - size, 0.0)) + inner)
-        farthest = np.log(np.square(r + size) + inner)
-        third = np.interp(nearest, log_v, table.third[:, channel])
-        value = np.interp(farthest, log_v, table.values[:, channel])
-        return size**3 * third <= 6.0 * tolerance * (value + floor[channel])
-
-    size = np.full(len(r), np.inf)
-    for channel in range(3):
-        low = np.full(len(r), 0.5 * log_v[0])
-        high = np.full(len(r), 0.5 * log_v[-1] + 1.0)
-        for _ in range(_STEPS):
-            middle = 0.5 * (low + high)
-            good = fits(np.exp(middle), channel)
-            low, high = np.where(good, middle, low), np.where(good, high, middle)
-        size = np.minimum(size, np.exp(low))
+    v, inner = table.v[::_EVERY], float(table.v[0])
     steps = np.diff(v)
     p, m = table.values[::_EVERY], table.slopes[::_EVERY]
     p0, p1, m0, m1 = p[:-1], p[1:], m[:-1] * steps[:, None], m[1:] * steps[:, None]
-    rows = [p0, m0, 3.0 * (p1 - p0) - 2.0 * m0 - m1, 2.0 * (p0 - p1) + m0 + m1]
-    return Kernel(
-        np.ascontiguousarray(np.stack(rows, axis=-1)),
-        1.0 / steps,
-        np.square(np.minimum(size[:-1], size[1:])),
-        inner,
-        _bits(inner, _SHIFT),
-    )
+    powers = [p0, m0, 3.0 * (p1 - p0) - 2.0 * m0 - m1, 2.0 * (p0 - p1) + m0 + m1]
+    rows, bend = np.zeros((len(steps), 4, 4)), np.zeros((len(steps), 4))
+    rows[:, :, :3] = np.stack(powers, axis=1)
+    lit = error > 0.0
+    bend[:, :3][:, lit] = table.third[::_EVERY][:-1, lit] / (6.0 * error[lit])
+    bend[:, 3] = bend.max(axis=1)
+    distance = np.sqrt(v[:-1] - inner)
+    return Kernel(rows, 1.0 / steps, bend, distance, inner, _bits(inner, _SHIFT))
 
 
 def _bits(v: float, shift: int) -> int:

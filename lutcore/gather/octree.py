@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
+from lutcore.gather.morton import LEVELS, codes
 from lutcore.gather.patches import Patches
 from lutcore.geometry import edge
 
-# Bits of a Morton code by axis.
-_LEVELS = 20
 _LEAF = 4
-_STACK = 7 * _LEVELS + 8
+_STACK = 7 * LEVELS + 8
+# Subtrees whose moments are found side by side hold so many patches at most.
+_TOGETHER = 2048
 
 
 class Octree(NamedTuple):
@@ -25,10 +26,10 @@ class Octree(NamedTuple):
     ball : ndarray, shape=(k, 4)
         Centre of power of all channels together, mm, and the square of the radius of the ball
         around it that holds the cluster's patches, mm^2.
-    terms : ndarray, shape=(k, 3, 10)
-        Moments of the light about that centre, channel by channel, mm^2, mm^3 and mm^4 times the
-        unit of irradiance: the integral of the light, those of x, y and z times it, and those of
-        xx, yy, zz, xy, yz and xz.
+    terms : ndarray of float32, shape=(k, 10, 4)
+        Moments of the light about that centre, mm^2, mm^3 and mm^4 times the unit of irradiance:
+        the integral of the light, those of x, y and z times it, and those of xx, yy, zz, xy, yz
+        and xz. Each of three channels, and a fourth of 0: vector instructions take four.
     skip : ndarray of int32, shape=(k,)
         The cluster that follows the whole subtree.
     first : ndarray of int32, shape=(k + 1,)
@@ -40,7 +41,7 @@ class Octree(NamedTuple):
     """
 
     ball: FloatArray
-    terms: FloatArray
+    terms: NDArray[np.float32]
     skip: IndexArray
     first: IndexArray
     corners: FloatArray
@@ -58,37 +59,21 @@ def octree(of: Patches) -> Octree:
     Returns
     -------
     Octree
-        At most 2 patches in a leaf, but where more have their centres together; about 500 bytes a
+        At most 4 patches in a leaf, but where more have their centres together; about 420 bytes a
         patch.
     """
-    code = _codes(of.corners)
+    code = codes((of.corners[:, 0] + of.corners[:, 1] + of.corners[:, 2]) / 3.0)
     order = np.argsort(code, kind="stable")
     corners, light = of.corners[order], of.light[order]
     skip, first = _nodes(code[order])
-    ball, terms = _moments(*_of_patches(corners, light), skip, first)
+    ball = np.zeros((len(skip), 4))
+    terms = np.zeros((len(skip), 10, 4), np.float32)
+    room = _STACK + int(np.diff(first[first >= 0]).max(initial=0))
+    subtrees = _subtrees(skip, first)
+    roots = _moments_below(subtrees, corners, light, skip, first, room, ball, terms)
+    _moments_above(subtrees, *roots, skip, room, ball, terms)
     _enclose(corners, skip, first, ball)
     return Octree(ball, terms, skip, first, corners, light)
-
-
-def _codes(corners: FloatArray) -> NDArray[np.int64]:
-    centres = corners.mean(axis=1)
-    if not len(centres):
-        return np.empty(0, np.int64)
-    low = centres.min(axis=0)
-    extent = float((centres.max(axis=0) - low).max())
-    cells = (centres - low) * ((2.0**_LEVELS - 1.0) / extent if extent > 0.0 else 0.0)
-    codes: NDArray[np.int64] = _interleaved(cells.astype(np.int64))
-    return codes
-
-
-@compiled(parallel=True)
-def _interleaved(cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    code = np.zeros(len(cells), np.int64)
-    for i in prange(len(cells)):
-        for bit in range(_LEVELS):
-            for axis in range(3):
-                code[i] |= ((cells[i, axis] >> bit) & 1) << (3 * bit + axis)
-    return code
 
 
 @compiled()
@@ -99,7 +84,7 @@ def _nodes(code: NDArray[np.int64]) -> tuple[IndexArray, IndexArray]:
     # Every inner node but for chains has two children; chains are passed over below.
     first = np.empty(2 * count + 1, np.int32)
     last_child = np.empty(2 * count + 1, np.int32)
-    begin[0], end[0], level[0], parent[0] = 0, count, _LEVELS, -1
+    begin[0], end[0], level[0], parent[0] = 0, count, LEVELS, -1
     waiting, nodes = min(count, 1), 0
     while waiting > 0:
         waiting -= 1
@@ -173,75 +158,151 @@ def patches_end(node: int, skip: IndexArray, first: IndexArray) -> int:
     return end
 
 
-@compiled(parallel=True)
-def _of_patches(corners: FloatArray, light: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the mean corner of each patch and the moments of its light about that."""
-    middle, terms = np.empty((len(corners), 3)), np.empty((len(corners), 3, 10))
-    for patch in prange(len(corners)):
-        ux, uy, uz = edge(corners[patch], 0, 1)
-        vx, vy, vz = edge(corners[patch], 0, 2)
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        area = 0.5 * np.sqrt(x * x + y * y + z * z)
-        arm = np.empty((3, 3))
+@compiled()
+def _of_patch(
+    corners: FloatArray, light: FloatArray, middle: FloatArray, terms: FloatArray
+) -> None:
+    """Write the mean corner of a patch and the moments of its light about that."""
+    ux, uy, uz = edge(corners, 0, 1)
+    vx, vy, vz = edge(corners, 0, 2)
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    area = 0.5 * np.sqrt(x * x + y * y + z * z)
+    for axis in range(3):
+        middle[axis] = (corners[0, axis] + corners[1, axis] + corners[2, axis]) / 3.0
+    for channel in range(3):
+        total = light[0, channel] + light[1, channel] + light[2, channel]
+        terms[channel, 0] = area * total / 3.0
+        # With lambda_j = 1 at corner j: int lambda_j light dA = area (light_j + total)/12;
+        # int lambda_j^2 light dA = area (4 light_j + 2 total)/60, and
+        # int lambda_j lambda_k light dA = area (light_j + light_k + total)/60.
         for axis in range(3):
-            a, b, c = corners[patch, 0, axis], corners[patch, 1, axis], corners[patch, 2, axis]
-            mean = (a + b + c) / 3.0
-            middle[patch, axis] = mean
-            arm[0, axis], arm[1, axis], arm[2, axis] = a - mean, b - mean, c - mean
-        for channel in range(3):
-            total = light[patch, 0, channel] + light[patch, 1, channel] + light[patch, 2, channel]
-            terms[patch, channel, 0] = area * total / 3.0
-            # With lambda_j = 1 at corner j: int lambda_j light dA = area (light_j + total)/12;
-            # int lambda_j^2 light dA = area (4 light_j + 2 total)/60, and
-            # int lambda_j lambda_k light dA = area (light_j + light_k + total)/60.
-            for axis in range(3):
-                first = 0.0
-                for j in range(3):
-                    first += light[patch, j, channel] * arm[j, axis]
-                terms[patch, channel, 1 + axis] = area * first / 12.0
-            for entry in range(6):
-                p, q = entry % 3, (entry + entry // 3) % 3
-                second = 0.0
-                for j in range(3):
-                    k = (j + 1) % 3
-                    own, other = light[patch, j, channel], light[patch, k, channel]
-                    second += (4.0 * own + 2.0 * total) * arm[j, p] * arm[j, q]
-                    both = arm[j, p] * arm[k, q] + arm[k, p] * arm[j, q]
-                    second += (own + other + total) * both
-                terms[patch, channel, 4 + entry] = area * second / 60.0
-    return middle, terms
+            first = 0.0
+            for j in range(3):
+                first += light[j, channel] * (corners[j, axis] - middle[axis])
+            terms[channel, 1 + axis] = area * first / 12.0
+        for entry in range(6):
+            p, q = entry % 3, (entry + entry // 3) % 3
+            second = 0.0
+            for j in range(3):
+                k = (j + 1) % 3
+                jp, jq = corners[j, p] - middle[p], corners[j, q] - middle[q]
+                kp, kq = corners[k, p] - middle[p], corners[k, q] - middle[q]
+                own, other = light[j, channel], light[k, channel]
+                second += (4.0 * own + 2.0 * total) * jp * jq
+                second += (own + other + total) * (jp * kq + kp * jq)
+            terms[channel, 4 + entry] = area * second / 60.0
 
 
 @compiled()
-def _moments(
-    middle: FloatArray, of_patches: FloatArray, skip: IndexArray, first: IndexArray
-) -> tuple[FloatArray, FloatArray]:
-    ball, terms = np.zeros((len(skip), 4)), np.zeros((len(skip), 3, 10))
-    part = np.empty(8, np.int64)
-    for node in range(len(skip) - 1, -1, -1):
-        if first[node] >= 0:
-            begin, end = patches_begin(node, first), patches_end(node, skip, first)
-            _join(middle, of_patches, np.arange(begin, end), ball[node], terms[node])
+def _subtrees(skip: IndexArray, first: IndexArray) -> IndexArray:
+    """Return the largest clusters of few patches, leaves at least; none lies in another."""
+    found, count, node = np.empty(len(skip), np.int32), 0, 0
+    while node < len(skip):
+        few = patches_end(node, skip, first) - patches_begin(node, first) <= _TOGETHER
+        if few or first[node] >= 0:
+            found[count] = node
+            node, count = skip[node], count + 1
         else:
-            child, number = node + 1, 0
-            while child < skip[node]:
-                part[number] = child
-                child, number = skip[child], number + 1
-            _join(ball, terms, part[:number], ball[node], terms[node])
-    return ball, terms
+            node += 1
+    return found[:count]
+
+
+@compiled(parallel=True)
+def _moments_below(
+    subtrees: IndexArray,
+    corners: FloatArray,
+    light: FloatArray,
+    skip: IndexArray,
+    first: IndexArray,
+    room: int,
+    ball: FloatArray,
+    terms: NDArray[np.float32],
+) -> tuple[FloatArray, FloatArray]:
+    """Write the moments of the clusters of some subtrees, and return those of their roots.
+
+    Double precision is kept on a stack: backwards, a cluster's parts are what was done last.
+    """
+    centres, found = np.zeros((len(subtrees), 3)), np.zeros((len(subtrees), 3, 10))
+    for which in prange(len(subtrees)):
+        root = np.int64(subtrees[which])
+        middle, waiting = np.zeros((room, 3)), np.zeros((room, 3, 10))
+        centre, whole = np.zeros(3), np.zeros((3, 10))
+        top = 0
+        for node in range(skip[root] - 1, root - 1, -1):
+            if first[node] >= 0:
+                begin, end = patches_begin(node, first), patches_end(node, skip, first)
+                for patch in range(begin, end):
+                    to = top + patch - begin
+                    _of_patch(corners[patch], light[patch], middle[to], waiting[to])
+                number = end - begin
+            else:
+                number = _children(node, skip)
+                top -= number
+            _join(middle[top : top + number], waiting[top : top + number], centre, whole)
+            _write(centre, whole, ball[node], terms[node])
+            middle[top], waiting[top] = centre, whole
+            top += 1
+        centres[which], found[which] = centre, whole
+    return centres, found
+
+
+@compiled()
+def _moments_above(
+    subtrees: IndexArray,
+    centres: FloatArray,
+    found: FloatArray,
+    skip: IndexArray,
+    room: int,
+    ball: FloatArray,
+    terms: NDArray[np.float32],
+) -> None:
+    """Write the moments of the clusters that hold the subtrees."""
+    middle, waiting = np.zeros((room, 3)), np.zeros((room, 3, 10))
+    centre, whole = np.zeros(3), np.zeros((3, 10))
+    top, which, node = 0, len(subtrees) - 1, len(skip) - 1
+    while node >= 0:
+        if which >= 0 and node == skip[subtrees[which]] - 1:
+            middle[top], waiting[top] = centres[which], found[which]
+            node, which = subtrees[which] - 1, which - 1
+        else:
+            number = _children(node, skip)
+            top -= number
+            _join(middle[top : top + number], waiting[top : top + number], centre, whole)
+            _write(centre, whole, ball[node], terms[node])
+            middle[top], waiting[top] = centre, whole
+            node -= 1
+        top += 1
+
+
+@compiled()
+def _children(node: int, skip: IndexArray) -> int:
+    child, number = node + 1, 0
+    while child < skip[node]:
+        child, number = skip[child], number + 1
+    return number
+
+
+@compiled()
+def _write(
+    centre: FloatArray, whole: FloatArray, ball: FloatArray, terms: NDArray[np.float32]
+) -> None:
+    ball[:3] = centre
+    for entry in range(10):
+        for channel in range(3):
+            terms[entry, channel] = whole[channel, entry]
 
 
 @compiled()
 def _join(
     centres: FloatArray,
     terms: FloatArray,
-    parts: NDArray[np.int64],
     centre: FloatArray,
     whole: FloatArray,
 ) -> None:
     """Write the common centre of power of several parts, and their moments about it."""
     power = 0.0
-    for part in parts:
+    centre[:], whole[:] = 0.0, 0.0
+    for part in range(len(centres)):
         for c in range(3):
             power += terms[part, c, 0]
             for axis in range(3):
@@ -250,8 +311,8 @@ def _join(
         if power > 0.0:
             centre[axis] /= power
         else:  # triangles without an area
-            centre[axis] = centres[parts, axis].mean()
-    for part in parts:
+            centre[axis] = centres[:, axis].mean()
+    for part in range(len(centres)):
         x = centres[part, 0] - centre[0]
         y = centres[part, 1] - centre[1]
         z = centres[part, 2] - centre[2]

@@ -6,9 +6,10 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.fresnel import transmittances
+from lutcore.geometry import edge
 from lutcore.lights import light_at
 from lutcore.shading import ShadingInputs
 
@@ -17,6 +18,9 @@ from lutcore.shading import ShadingInputs
 _DEVIATION = 5e-3
 _DEEPEST = 5
 _STACK = 3 * _DEEPEST + 4
+_CHUNK = 256
+_BITS = 64
+_NONE, _ONE = np.uint64(0), np.uint64(1)
 
 
 class Patches(NamedTuple):
@@ -68,11 +72,38 @@ def patches(inputs: ShadingInputs) -> Patches:
     on = _Surface(inputs.points, inputs.normals, inputs.faces, inputs.lights, visible, eta)
     light = _at_vertices(on)
     limit = _DEVIATION * light.sum(axis=0) / np.maximum(np.count_nonzero(light, axis=0), 1)
-    whole, count = _count(on, limit, light)
+    cuts, count = _count(on, limit, light)
     start = np.cumsum(count) - count
     corners, light_of = np.empty((count.sum(), 3, 3)), np.empty((count.sum(), 3, 3))
-    _fill(on, limit, light, whole, start, count, inputs.mm_per_unit, corners, light_of)
+    _fill(on, limit, light, cuts, start, count, inputs.mm_per_unit, corners, light_of)
     return Patches(corners, light_of)
+
+
+@compiled()
+def power_of(corners: FloatArray, light: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Integrate over patches (in one order, whatever the number of threads).
+
+    Parameters
+    ----------
+    corners, light : ndarray, shape=(p, 3, 3)
+        Those of `Patches`.
+
+    Returns
+    -------
+    tuple of ndarray, each shape=(3,)
+        Of each channel, the integral of the light, and of the squares of the patches' means.
+    """
+    power, squares = np.zeros(3), np.zeros(3)
+    for patch in range(len(corners)):
+        ux, uy, uz = edge(corners[patch], 0, 1)
+        vx, vy, vz = edge(corners[patch], 0, 2)
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        area = 0.5 * np.sqrt(x * x + y * y + z * z)
+        for c in range(3):
+            mean = (light[patch, 0, c] + light[patch, 1, c] + light[patch, 2, c]) / 3.0
+            power[c] += area * mean
+            squares[c] += area * mean * mean
+    return power, squares
 
 
 @compiled()
@@ -142,27 +173,30 @@ def _at_vertices(on: _Surface) -> FloatArray:
 
 
 @compiled()
-def _bends(on: _Surface, face: int, part: FloatArray, limit: FloatArray, light: FloatArray) -> bool:
-    """Tell whether light bends over a part; `part` holds u and v of its corners."""
+def _middles(
+    on: _Surface, face: int, part: FloatArray, limit: FloatArray, middle: FloatArray
+) -> bool:
+    """Write u, v and the light of the middles of a part's edges; tell whether light bends there."""
     bends = False
     for j in range(3):
         k = (j + 1) % 3
         u, v = 0.5 * (part[j, 0] + part[k, 0]), 0.5 * (part[j, 1] + part[k, 1])
-        between = _entering(on, face, u, v)
-        for channel in range(3):
-            mean = 0.5 * (light[j, channel] + light[k, channel])
-            bends = bends or abs(between[channel] - mean) > limit[channel]
+        middle[j, 0], middle[j, 1] = u, v
+        middle[j, 2], middle[j, 3], middle[j, 4] = _entering(on, face, u, v)
+        for entry in range(2, 5):
+            mean = 0.5 * (part[j, entry] + part[k, entry])
+            bends = bends or abs(middle[j, entry] - mean) > limit[entry - 2]
     return bends
 
 
 @compiled()
-def _quarter(whole: FloatArray, which: int, out: FloatArray) -> None:
-    """Make one of the four quarters: three at the corners, and that between them."""
+def _whole(face: int, faces: IndexArray, light: FloatArray, part: FloatArray) -> None:
+    """Write u, v and the light of a face's corners."""
+    part[:, :2] = 0.0
+    part[1, 0] = part[2, 1] = 1.0
     for j in range(3):
-        # The corner itself and the middles of its edges; the last has the middles alone.
-        other = which if which < 3 else (j + 1) % 3
-        for axis in range(whole.shape[1]):
-            out[j, axis] = 0.5 * (whole[j, axis] + whole[other, axis])
+        for channel in range(3):
+            part[j, 2 + channel] = light[faces[face, j], channel]
 
 
 @compiled()
@@ -171,57 +205,67 @@ def _cut(
     face: int,
     limit: FloatArray,
     mm_per_unit: float,
+    waiting: FloatArray,
+    depth: NDArray[np.int64],
+    cuts: np.uint64,
+    known: int,
     corners: FloatArray,
     light: FloatArray,
-) -> int:
-    """Cut a face until light is linear, and write the lit parts if there is room for them."""
-    waiting, depth = np.zeros((_STACK, 3, 2)), np.zeros(_STACK, np.int64)
-    part, found = np.empty((3, 2)), np.empty((3, 3))
-    waiting[0, 1, 0] = waiting[0, 2, 1] = 1.0
-    top, count = 1, 0
+) -> tuple[int, np.uint64]:
+    """Cut the face that waits until light is linear; write the lit parts if there is room for them.
+
+    Returns how many are lit, and a bit for each of the first 64 parts, set where it is cut. As many
+    of those in `cuts` as are `known` are taken for granted: light is looked up only where needed.
+    """
+    part, middle = np.empty((3, 5)), np.empty((3, 5))
+    depth[0], top, count, seen = 0, 1, 0, 0
     while top > 0:
         top -= 1
         part[:], deep = waiting[top], depth[top]
-        lit = False
-        for j in range(3):
-            found[j, 0], found[j, 1], found[j, 2] = _entering(on, face, part[j, 0], part[j, 1])
-            lit = lit or found[j, 0] + found[j, 1] + found[j, 2] > 0.0
-        if deep < _DEEPEST and _bends(on, face, part, limit, found):
-            for which in range(4):
-                _quarter(part, which, waiting[top])
+        bends = deep < _DEEPEST
+        if seen < known:
+            bends = bool((cuts >> np.uint64(seen)) & _ONE)
+        if bends:
+            bends = _middles(on, face, part, limit, middle)
+        if bends and known <= seen < _BITS:
+            cuts |= _ONE << np.uint64(seen)
+        seen += 1
+        if bends:
+            for which in range(3):
+                waiting[top, 0] = part[which]
+                waiting[top, 1] = middle[which]
+                waiting[top, 2] = middle[(which + 2) % 3]
                 depth[top] = deep + 1
                 top += 1
-        elif lit:
+            waiting[top], depth[top] = middle, deep + 1
+            top += 1
+        elif part[:, 2:].max() > 0.0:
             if len(corners) > 0:
-                light[count] = found
+                light[count] = part[:, 2:]
                 for j in range(3):
                     x, y, z = _position(on, face, part[j, 0], part[j, 1])
                     corners[count, j, 0] = mm_per_unit * x
                     corners[count, j, 1] = mm_per_unit * y
                     corners[count, j, 2] = mm_per_unit * z
             count += 1
-    return count
+    return count, cuts
 
 
 @compiled(parallel=True)
 def _count(
     on: _Surface, limit: FloatArray, light: FloatArray
-) -> tuple[BoolArray, NDArray[np.int64]]:
-    """Return which faces need no cut, and the number of patches of each."""
-    whole, count = np.zeros(len(on.faces), np.bool_), np.zeros(len(on.faces), np.int64)
-    nothing = np.empty((0, 3, 3))
-    for face in prange(len(on.faces)):
-        part, found = np.zeros((3, 2)), np.empty((3, 3))
-        part[1, 0] = part[2, 1] = 1.0
-        for j in range(3):
-            for channel in range(3):
-                found[j, channel] = light[on.faces[face, j], channel]
-        whole[face] = not _bends(on, face, part, limit, found)
-        if whole[face]:
-            count[face] = 1 if found.max() > 0.0 else 0
-        else:
-            count[face] = _cut(on, face, limit, 1.0, nothing, nothing)
-    return whole, count
+) -> tuple[NDArray[np.uint64], NDArray[np.int64]]:
+    """Return how each face is cut, see `_cut`, and the number of its patches."""
+    cuts, count = np.zeros(len(on.faces), np.uint64), np.zeros(len(on.faces), np.int64)
+    for chunk in prange((len(on.faces) + _CHUNK - 1) // _CHUNK):
+        waiting, depth = np.empty((_STACK, 3, 5)), np.empty(_STACK, np.int64)
+        nothing = np.empty((0, 3, 3))
+        for face in range(chunk * _CHUNK, min((chunk + 1) * _CHUNK, len(on.faces))):
+            _whole(face, on.faces, light, waiting[0])
+            count[face], cuts[face] = _cut(
+                on, face, limit, 1.0, waiting, depth, _NONE, 0, nothing, nothing
+            )
+    return cuts, count
 
 
 @compiled(parallel=True)
@@ -229,22 +273,18 @@ def _fill(
     on: _Surface,
     limit: FloatArray,
     light: FloatArray,
-    whole: BoolArray,
+    cuts: NDArray[np.uint64],
     start: NDArray[np.int64],
     count: NDArray[np.int64],
     mm_per_unit: float,
     corners: FloatArray,
     light_of: FloatArray,
 ) -> None:
-    for face in prange(len(on.faces)):
-        to = start[face]
-        if count[face] == 0:
-            continue
-        if not whole[face]:
-            end = to + count[face]
-            _cut(on, face, limit, mm_per_unit, corners[to:end], light_of[to:end])
-            continue
-        for j in range(3):
-            for axis in range(3):
-                corners[to, j, axis] = mm_per_unit * on.points[on.faces[face, j], axis]
-                light_of[to, j, axis] = light[on.faces[face, j], axis]
+    for chunk in prange((len(on.faces) + _CHUNK - 1) // _CHUNK):
+        waiting, depth = np.empty((_STACK, 3, 5)), np.empty(_STACK, np.int64)
+        for face in range(chunk * _CHUNK, min((chunk + 1) * _CHUNK, len(on.faces))):
+            if count[face] > 0:
+                _whole(face, on.faces, light, waiting[0])
+                some = corners[start[face] : start[face] + count[face]]
+                lit = light_of[start[face] : start[face] + count[face]]
+                _cut(on, face, limit, mm_per_unit, waiting, depth, cuts[face], _BITS, some, lit)
