@@ -22,7 +22,7 @@ _DENSE = 8
 _CHUNK = 256
 # What one cluster may be off by, over the mean exitance, at a tolerance of 1. Found, with a margin:
 # errors grow as the bound to the power of three quarters.
-_SHARE, _POWER = 18.0, 4.0 / 3.0
+_SHARE, _POWER = 16.0, 4.0 / 3.0
 # The same for a part of a patch in brute force, at a bound of 1.
 _TINY = 1e-5
 
@@ -205,7 +205,8 @@ def exact(inputs: ShadingInputs, points: ArrayLike, bound: float = 0.1) -> Float
     of, known = patches(inputs), _known(inputs)
     chosen = kernel(known, bound * _TINY * _mean(known, of))
     ready = _ready(_row(of), chosen, inputs.mm_per_unit)
-    return ready.by_blocks(targets, _BLOCK, stage(inputs.progress, 0.1, 1.0))
+    # One by one, so that a point's value does not depend on which others are asked for.
+    return ready.by_blocks(targets, 1, stage(inputs.progress, 0.1, 1.0))
 
 
 def _known(inputs: ShadingInputs) -> Radial:
