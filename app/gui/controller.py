@@ -1,7 +1,7 @@
 """What the window does, without a window: one document, one worker, one picture. Knows no Qt."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from psygnal import Signal
 
 from app import session as state
+from app.gui import ahead
 from app.gui.document import Document
 from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
@@ -21,7 +22,6 @@ from lutcore.progress import Progress
 
 if TYPE_CHECKING:
     from app.composition import Composition
-    from lutcore.curvature import PrincipalCurvatures
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
@@ -58,8 +58,8 @@ class Outcome:
         The mesh.
     composition : Composition
         What the view shows.
-    curvatures : PrincipalCurvatures
-        What the picture used, 1/mesh unit.
+    measured : tuple
+        What tells the session's curvature from others; see `Pipeline.curvature_key`.
     mm_per_unit : float
         Size of a mesh unit.
     settled : tuple of Settled
@@ -69,7 +69,7 @@ class Outcome:
     session: Session
     subject: Subject
     composition: "Composition"
-    curvatures: "PrincipalCurvatures"
+    measured: tuple[Hashable, ...]
     mm_per_unit: float
     settled: tuple[Settled, ...] = ()
 
@@ -113,7 +113,7 @@ class Controller:
         self.document = Document(session or Session())
         self.pipeline = Pipeline()
         """Used in the worker's thread only: see `run`."""
-        self.worker = Worker(post, self.standing.emit)
+        self.worker = Worker(post, self.standing.emit, ahead.steps())
         self.aside = Worker(post, self.standing.emit)
         """For what needs no pipeline and takes long: pictures go on meanwhile."""
         self.outcome: Outcome | None = None
@@ -356,7 +356,7 @@ class Controller:
             session,
             subject,
             made,
-            self.pipeline.curvatures(session),
+            self.pipeline.curvature_key(session),
             self.pipeline.mm_per_unit(session),
             settled,
         )

@@ -16,7 +16,7 @@ from app.settling import model_of
 from lutcore.choice import choose
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
-from tests.app.gui.mouse import move
+from tests.app.gui.mouse import click_tab, move
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -166,6 +166,18 @@ def test_handles_are_seen_only_with_the_dock_and_never_saved(qtbot, view):
     # Rounding of a colour between vertices may differ with multisampling.
     assert np.abs(saved[patch].astype(int) - bare[patch]).max() <= 2
     assert np.abs(saved[patch].astype(int) - shown[patch]).max() > 50
+
+
+def test_handles_go_when_another_tab_covers_the_dock(qtbot, view):
+    at = handle(view, 0)
+    patch = np.s_[at.y() - 4 : at.y() + 5, at.x() - 4 : at.x() + 5]
+    shown = pixels(view)[patch]
+    click_tab(qtbot, view, "Shading")
+    qtbot.waitUntil(lambda: not view.light_tool.handles.shown)
+    assert (pixels(view)[patch] != shown).any()
+    click_tab(qtbot, view, "Lights")
+    qtbot.waitUntil(lambda: view.light_tool.handles.shown)
+    np.testing.assert_array_equal(pixels(view)[patch], shown)
 
 
 def test_the_chosen_light_survives_that_others_go(window):
