@@ -17,6 +17,11 @@ _PATIENCE = 60_000  # ms
 def screen() -> None:
     """A virtual screen of our own, whatever screen there is: tests must not depend on it."""
     start_screen()
+    from qtpy.QtCore import Qt
+    from qtpy.QtWidgets import QApplication
+
+    # Those of a desktop would wait for a person.
+    QApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
 
 
 @pytest.fixture

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from pytestqt.exceptions import TimeoutError as NotYetError
-from qtpy.QtCore import QEvent, QObject, QPoint, Qt
+from qtpy.QtCore import QEvent, QObject, QPoint
 from qtpy.QtGui import QMouseEvent
-from qtpy.QtWidgets import QTabBar, QWidget
+from qtpy.QtWidgets import QWidget
 
 _PATIENCE = 500  # ms a busy X server may take; then the move is made again
 _ANSWER = 10_000  # ms that what follows from the move may take until then
@@ -48,14 +48,3 @@ def move(qtbot, widget: QWidget, place: QPoint, until: Callable[[], bool] | None
     finally:
         widget.removeEventFilter(ear)
         ear.deleteLater()
-
-
-def click_tab(qtbot, window, title: str) -> None:
-    """Bring a dock to the front by a click on its tab."""
-    for bar in window.findChildren(QTabBar):
-        texts = [bar.tabText(index) for index in range(bar.count())]
-        if bar.isVisible() and title in texts:
-            at = bar.tabRect(texts.index(title)).center()
-            qtbot.mouseClick(bar, Qt.MouseButton.LeftButton, pos=at)
-            return
-    raise AssertionError(f"no tab is called {title}")

@@ -16,7 +16,8 @@ from app.settling import model_of
 from lutcore.choice import choose
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
-from tests.app.gui.mouse import click_tab, move
+from tests.app.gui.hands import click_tab
+from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
 

@@ -25,21 +25,6 @@ def test_the_first_picture_shows_the_mesh(window) -> None:
     assert (shown != background).any(axis=2).mean() > 0.1
 
 
-def test_a_broken_file_gives_a_message_and_the_old_picture_stays(window, qtbot, tmp_path) -> None:
-    before, session = pixels(window), window.controller.session
-    bad = tmp_path / "bad.ply"
-    bad.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
-    window.controller.open(bad)
-    settled(qtbot, window)
-    assert window.banner.isVisible()
-    assert "bad.ply" in window.banner.label.text()
-    assert window.controller.session == session
-    window.banner.hide()
-    qtbot.wait(50)
-    settled(qtbot, window)
-    np.testing.assert_array_equal(pixels(window), before)
-
-
 def test_a_drag_turns_the_mesh_and_is_no_step_of_the_history(window, qtbot) -> None:
     before = window.canvas.camera
     _drag(qtbot, window.canvas, (300, 300), (400, 300), Qt.MouseButton.LeftButton)
