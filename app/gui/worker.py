@@ -59,7 +59,7 @@ class Worker:
     """
 
     _TELL = 0.1
-    # Freed memory is given back after so many s without a job, and after a job that took so long.
+    # Freed memory is given back after so many s without a job, and after so many s of jobs.
     _REST, _LONG = 0.3, 1.0
     _BREATH = 0.05  # s between what is done while nothing is asked for
 
@@ -138,6 +138,7 @@ class Worker:
 
     def _work(self) -> None:
         patience: float | None = None
+        worked = 0.0
         while True:
             with self._wake:
                 asked = self._wake.wait_for(self._asked, patience)
@@ -150,8 +151,10 @@ class Worker:
                 continue
             patience, start = self._REST, time.monotonic()
             self._do(task)
-            if time.monotonic() - start > self._LONG:
+            worked += time.monotonic() - start
+            if worked > self._LONG:
                 give_back()
+                worked = 0.0
             with self._wake:
                 self._running = None
                 idle = not self._waiting

@@ -9,8 +9,9 @@ import msgspec
 from lutcore.progress import Progress, silent
 
 T = TypeVar("T")
-# Of each kind of step, the last few results; a light that is dragged pushes out nothing else.
-_KEPT = 6
+# Of each kind of step, the last few results, enough for four views side by side; a light that is
+# dragged pushes out nothing else.
+_KEPT = 4
 _KEPT_OF = {"exitance": 8, "light": 8, "draft": 4}
 
 

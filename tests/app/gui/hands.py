@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from qtpy.QtCore import QPoint, Qt, QTimer
@@ -118,26 +119,26 @@ def answered(kind: type[QDialog], answer: Callable[[QDialog], None]) -> Iterator
 
 def named(path: Path | str):
     """Type the name of a file into the dialog that asks for one."""
-
-    def answer(dialog: QDialog) -> None:
-        line = dialog.findChild(QLineEdit, "fileNameEdit")
-        line.selectAll()
-        QTest.keyClicks(line, str(path))
-        _accept(dialog)
-
-    return answered(QFileDialog, answer)
+    return answered(QFileDialog, partial(_confirm, lambda line: True, str(path)))
 
 
 def colored(text: str):
     """Type a colour into the dialog that asks for one."""
+    return answered(QColorDialog, partial(_confirm, lambda line: line.text()[:1] == "#", text))
 
-    def answer(dialog: QDialog) -> None:
-        line = next(one for one in dialog.findChildren(QLineEdit) if one.text().startswith("#"))
+
+def _confirm(wanted: Callable[[QLineEdit], bool], text: str, dialog: QDialog) -> None:
+    """Type and confirm, once more where it came too early: a dialog of files looks for them."""
+    accepting = QDialogButtonBox.ButtonRole.AcceptRole
+    box = dialog.findChild(QDialogButtonBox)
+    button = next(one for one in box.buttons() if box.buttonRole(one) == accepting)
+    line = next(one for one in dialog.findChildren(QLineEdit) if one.isVisible() and wanted(one))
+    end = time.monotonic() + _PATIENCE
+    while dialog.isVisible() and time.monotonic() < end:
         line.selectAll()
         QTest.keyClicks(line, text)
-        _accept(dialog)
-
-    return answered(QColorDialog, answer)
+        QTest.mouseClick(button, LEFT)
+        QTest.qWait(100)
 
 
 def dismissed(kind: type[QDialog]):
@@ -153,12 +154,3 @@ def pressed(button: QMessageBox.StandardButton):
         QTest.mouseClick(dialog.button(button), LEFT)
 
     return answered(QMessageBox, answer)
-
-
-def _accept(dialog: QDialog) -> None:
-    box = dialog.findChild(QDialogButtonBox)
-    accepting = QDialogButtonBox.ButtonRole.AcceptRole
-    button = next(one for one in box.buttons() if box.buttonRole(one) == accepting)
-    while dialog.isVisible() and not button.isEnabled():
-        QTest.qWait(10)  # it looks for the file
-    QTest.mouseClick(button, LEFT)
