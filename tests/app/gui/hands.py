@@ -95,6 +95,7 @@ def type_in(qtbot, field: QWidget, text: str) -> None:
 def answered(kind: type[QDialog], answer: Callable[[QDialog], None]) -> Iterator[None]:
     """Answer a dialog that must come while the block runs, which waits for it."""
     came: list[str] = []
+    window = QApplication.activeWindow()
     begun = time.monotonic()
 
     def look() -> None:
@@ -115,20 +116,23 @@ def answered(kind: type[QDialog], answer: Callable[[QDialog], None]) -> Iterator
     finally:
         timer.stop()
     assert came, f"no {kind.__name__} came"
+    if window is not None and window.isVisible():
+        window.activateWindow()  # no window manager gives it the keyboard back
+        assert QTest.qWaitForWindowActive(window, round(1000 * _PATIENCE))
 
 
 def named(path: Path | str):
-    """Type the name of a file into the dialog that asks for one."""
+    """Give the name of a file to the dialog that asks for one."""
     return answered(QFileDialog, partial(_confirm, lambda line: True, str(path)))
 
 
 def colored(text: str):
-    """Type a colour into the dialog that asks for one."""
+    """Give a colour to the dialog that asks for one."""
     return answered(QColorDialog, partial(_confirm, lambda line: line.text()[:1] == "#", text))
 
 
 def _confirm(wanted: Callable[[QLineEdit], bool], text: str, dialog: QDialog) -> None:
-    """Type and confirm, once more where it came too early: a dialog of files looks for them."""
+    """Give a text and confirm, once more where that came too early."""
     accepting = QDialogButtonBox.ButtonRole.AcceptRole
     box = dialog.findChild(QDialogButtonBox)
     button = next(one for one in box.buttons() if box.buttonRole(one) == accepting)
@@ -136,7 +140,9 @@ def _confirm(wanted: Callable[[QLineEdit], bool], text: str, dialog: QDialog) ->
     end = time.monotonic() + _PATIENCE
     while dialog.isVisible() and time.monotonic() < end:
         line.selectAll()
-        QTest.keyClicks(line, text)
+        # As if pasted: letter by letter a dialog of files may go on holding the folders on the way
+        # for what is meant, and let nobody confirm.
+        line.insert(text)
         QTest.mouseClick(button, LEFT)
         QTest.qWait(100)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
+from qtpy.QtWidgets import QStyle, QStyleOptionSlider
 
 from app import costs
 from app.gui.aiming import place_of
@@ -16,7 +17,7 @@ from app.settling import model_of
 from lutcore.choice import choose
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
-from tests.app.gui.hands import click_tab
+from tests.app.gui.hands import click_tab, undo
 from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
@@ -24,7 +25,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 @pytest.fixture
 def view(qtbot, window):
-    window.docks["lights"].raise_()
+    click_tab(qtbot, window, "Lights")
     content = window.docks["lights"].fill()
     settled(qtbot, window)
     qtbot.waitUntil(content.isVisible)
@@ -100,14 +101,24 @@ def _colours(view):
 
 
 def test_a_material_that_is_dragged_is_shaded_exactly(qtbot, view):
-    view.controller.begin_drag()
-    view.controller.change("material", material="skin2")
+    click_tab(qtbot, view, "Shading")
+    slider = view.docks["shading"].fill().material.scattering[0].slider
     settled(qtbot, view)
+    option = QStyleOptionSlider()
+    slider.initStyleOption(option)
+    part = QStyle.SubControl.SC_SliderHandle
+    grip = slider.style().subControlRect(QStyle.ComplexControl.CC_Slider, option, part, slider)
+    QTest.mousePress(slider, LEFT, pos=grip.center())
+    move(qtbot, slider, grip.center() + QPoint(15, 0))
+    settled(qtbot, view)
+    assert view.controller.outcome.session.material.scattering[0] > 0.74
     held = view.controller.outcome.composition.exposure
     made = compose(view.controller.outcome.session, Pipeline(), held)
     np.testing.assert_array_equal(made.panels[0].content.rgb, _colours(view)[1])
-    view.controller.end_drag()
+    QTest.mouseRelease(slider, LEFT, pos=grip.center() + QPoint(15, 0))
     settled(qtbot, view)
+    undo(qtbot, view)
+    assert view.controller.session.material == "skin1"
 
 
 def test_a_drag_is_one_step_however_long_it_takes(qtbot, view, monkeypatch):
@@ -115,9 +126,9 @@ def test_a_drag_is_one_step_however_long_it_takes(qtbot, view, monkeypatch):
     before = view.controller.session.lights
     drag(qtbot, view.canvas, handle(view, 0), QPoint(-15, 0))
     drag(qtbot, view.canvas, handle(view, 0), QPoint(-5, 5))
-    view.controller.document.undo()
+    undo(qtbot, view)
     middle = view.controller.session.lights
-    view.controller.document.undo()
+    undo(qtbot, view)
     assert view.controller.session.lights == before != middle
     settled(qtbot, view)
 
