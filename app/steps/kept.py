@@ -12,7 +12,8 @@ T = TypeVar("T")
 # Of each kind of step, the last few results, enough for four views side by side; a light that is
 # dragged pushes out nothing else.
 _KEPT = 4
-_KEPT_OF = {"exitance": 8, "light": 8, "draft": 4}
+# Inputs are made in a millisecond of what others keep, and would hold that beyond its time.
+_KEPT_OF = {"exitance": 8, "light": 8, "inputs": 2}
 
 
 class Kept:
