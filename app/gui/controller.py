@@ -12,6 +12,7 @@ from psygnal import Signal
 from app import session as state
 from app.gui import ahead
 from app.gui.document import Document
+from app.gui.memory import keep_large_apart
 from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
 from app.session import Camera, Session, Settled
@@ -109,7 +110,9 @@ class Controller:
     """Emitted with the `Standing` of long work, None when there is none."""
 
     def __init__(self, post: Post, session: Session | None = None) -> None:
-        compile_elsewhere()  # this process lives long, and its memory is to stay flat
+        # This process lives long, and its memory is to stay flat.
+        compile_elsewhere()
+        keep_large_apart()
         self.document = Document(session or Session())
         self.pipeline = Pipeline()
         """Used in the worker's thread only: see `run`."""

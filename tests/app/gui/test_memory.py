@@ -30,6 +30,29 @@ def test_freed_memory_goes_back_to_the_system():
     assert full - resident().rss > 64 * 2**20
 
 
+_HEAPS = """
+import numpy as np, psutil
+from app.gui.memory import keep_large_apart
+keep_large_apart()
+resident = psutil.Process().memory_info
+np.ones(2**21)  # once one so large was freed, glibc takes the next from its heap
+large = [(np.ones(2**18), np.ones(2**10)) for _ in range(40)]
+full = resident().rss
+small = [one for _, one in large]
+del large
+print(full - resident().rss)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the allocator does so by itself")
+def test_a_large_array_is_gone_when_it_is_freed():
+    done = subprocess.run(
+        [sys.executable, "-c", _HEAPS], capture_output=True, text=True, check=True
+    )
+    # 40 arrays of 2 MiB, with small ones in between that stay.
+    assert int(done.stdout) > 60 * 2**20
+
+
 def test_a_worker_that_rests_gives_back_once_what_its_jobs_freed(monkeypatch):
     given = []
     given_back, done = threading.Event(), threading.Event()
