@@ -29,7 +29,7 @@ class Banner(QFrame):
         self.label.setTextFormat(Qt.TextFormat.PlainText)
         self.label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
-        close = QToolButton(self)
+        self.close_ = close = QToolButton(self)
         close.setText("\N{MULTIPLICATION SIGN}")
         close.setAutoRaise(True)
         close.setAccessibleName("Close the message")

@@ -1,7 +1,7 @@
 """What the window does, without a window: one document, one worker, one picture. Knows no Qt."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -10,7 +10,9 @@ from msgspec.structs import replace
 from psygnal import Signal
 
 from app import session as state
+from app.gui import ahead
 from app.gui.document import Document
+from app.gui.memory import keep_large_apart
 from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
 from app.session import Camera, Session, Settled
@@ -21,7 +23,6 @@ from lutcore.progress import Progress
 
 if TYPE_CHECKING:
     from app.composition import Composition
-    from lutcore.curvature import PrincipalCurvatures
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
@@ -58,8 +59,8 @@ class Outcome:
         The mesh.
     composition : Composition
         What the view shows.
-    curvatures : PrincipalCurvatures
-        What the picture used, 1/mesh unit.
+    measured : tuple
+        What tells the session's curvature from others; see `Pipeline.curvature_key`.
     mm_per_unit : float
         Size of a mesh unit.
     settled : tuple of Settled
@@ -69,7 +70,7 @@ class Outcome:
     session: Session
     subject: Subject
     composition: "Composition"
-    curvatures: "PrincipalCurvatures"
+    measured: tuple[Hashable, ...]
     mm_per_unit: float
     settled: tuple[Settled, ...] = ()
 
@@ -109,11 +110,13 @@ class Controller:
     """Emitted with the `Standing` of long work, None when there is none."""
 
     def __init__(self, post: Post, session: Session | None = None) -> None:
-        compile_elsewhere()  # this process lives long, and its memory is to stay flat
+        # This process lives long, and its memory is to stay flat.
+        compile_elsewhere()
+        keep_large_apart()
         self.document = Document(session or Session())
         self.pipeline = Pipeline()
         """Used in the worker's thread only: see `run`."""
-        self.worker = Worker(post, self.standing.emit)
+        self.worker = Worker(post, self.standing.emit, ahead.steps())
         self.aside = Worker(post, self.standing.emit)
         """For what needs no pipeline and takes long: pictures go on meanwhile."""
         self.outcome: Outcome | None = None
@@ -356,7 +359,7 @@ class Controller:
             session,
             subject,
             made,
-            self.pipeline.curvatures(session),
+            self.pipeline.curvature_key(session),
             self.pipeline.mm_per_unit(session),
             settled,
         )

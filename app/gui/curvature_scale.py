@@ -10,6 +10,7 @@ from app.session import Session
 
 if TYPE_CHECKING:
     from app.gui.controller import Controller, Outcome
+    from app.pipeline import Pipeline
 
 # From less than any scan's spacing to its size, as shares of its diagonal.
 _LEAST, _MOST = 2e-4, 0.25
@@ -28,7 +29,8 @@ class ScaleForm(QWidget):
         super().__init__()
         self._controller = controller
         self._mm_per_unit = 1.0
-        self._median = 0.0
+        self._median = 0.0  # mesh units
+        self._measured: tuple[object, ...] = ()
         self.auto = QCheckBox("auto", self)
         self.auto.setAccessibleName("Automatic scale")
         self.auto.setToolTip("Let the estimator choose the length that it averages over")
@@ -60,10 +62,10 @@ class ScaleForm(QWidget):
         if session.scale is not None:
             self.slider.follow(session.scale * self._mm_per_unit)
         elif self._median > 0.0:
-            self.slider.follow(self._median)
+            self.slider.follow(self._median * self._mm_per_unit)
 
     def measure(self, outcome: "Outcome") -> None:
-        """Take the size of the mesh, and the scale that was used.
+        """Take the size of the mesh, and ask for the scale that its curvature has.
 
         Parameters
         ----------
@@ -77,8 +79,17 @@ class ScaleForm(QWidget):
             self._row.removeWidget(self.slider)
             self.slider.deleteLater()
             self.slider = self._made(_LEAST * diagonal, _MOST * diagonal)
-        some = np.atleast_1d(np.asarray(outcome.curvatures.scale))[::97]
-        self._median = float(np.median(some)) * outcome.mm_per_unit
+            self._median = 0.0
+        self.follow(self._controller.session)
+        if outcome.measured != self._measured:
+            self._measured = outcome.measured
+            pipeline = self._controller.pipeline
+            self._controller.run(
+                "scale", lambda _: typical_scale(outcome.session, pipeline), self._on_found
+            )
+
+    def _on_found(self, median: float) -> None:
+        self._median = median
         self.follow(self._controller.session)
 
     def _on_auto(self, on: bool) -> None:
@@ -87,3 +98,22 @@ class ScaleForm(QWidget):
 
     def _on_changed(self, millimetres: float) -> None:
         self._controller.change("scale", scale=millimetres / self._mm_per_unit)
+
+
+def typical_scale(session: Session, pipeline: "Pipeline") -> float:
+    """Return the length that a session's curvature is averaged over.
+
+    Parameters
+    ----------
+    session : Session
+        Its mesh, estimator and scale are used.
+    pipeline : Pipeline
+        Where arrays come from.
+
+    Returns
+    -------
+    float
+        Mesh units; the median where it differs from place to place.
+    """
+    some = np.atleast_1d(np.asarray(pipeline.curvatures(session).scale))[::97]
+    return float(np.median(some))

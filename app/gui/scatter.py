@@ -277,6 +277,9 @@ class Scatter(QWidget):
             box = QRectF(at.x() + right, at.y() + up, width, height)
             inside = box.left() > frame.left() and box.right() < self.width()
             if inside and not any(box.intersects(other) for other in taken):
+                ground = self.palette().color(QPalette.ColorRole.Window)
+                ground.setAlphaF(0.8)  # lines below go on, but do not strike it out
+                painter.fillRect(box, ground)
                 painter.drawText(box, 0, label)
                 taken.append(box)
                 return

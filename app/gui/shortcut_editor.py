@@ -79,16 +79,6 @@ class ShortcutEditor(QDialog):
         width = max(window.width() * 0.55, self.list.header().length() + 60)
         fit(self, width, window.height() * 0.8)
 
-    def choose(self, name: str) -> None:
-        """Choose an action.
-
-        Parameters
-        ----------
-        name : str
-            Of the action.
-        """
-        self.list.setCurrentItem(self._rows[name])
-
     def _arrange(self) -> None:
         below = QWidget(self)
         row = QHBoxLayout(below)

@@ -2,7 +2,8 @@
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
@@ -52,14 +53,23 @@ class Worker:
         Runs a function on the thread that results belong to.
     standing : callable
         Told there, a few times a second, where the work stands; None when nothing is left to do.
+    at_rest : iterable of callable
+        Done one by one while nothing is asked for, after the first job. Each is short, as a job
+        waits for its end; nobody hears of one that fails, as what needs it will fail too.
     """
 
     _TELL = 0.1
-    # Freed memory is given back after so many s without a job, and after a job that took so long.
+    # Freed memory is given back after so many s without a job, and after so many s of jobs.
     _REST, _LONG = 0.3, 1.0
+    _BREATH = 0.05  # s between what is done while nothing is asked for
 
-    def __init__(self, post: Post, standing: Callable[[Standing | None], None]) -> None:
-        self.post, self._standing = post, standing
+    def __init__(
+        self,
+        post: Post,
+        standing: Callable[[Standing | None], None],
+        at_rest: Iterable[Callable[[], object]] = (),
+    ) -> None:
+        self.post, self._standing, self._at_rest = post, standing, iter(at_rest)
         self._waiting: dict[str, _Task[object]] = {}
         self._running: _Task[object] | None = None
         self._ended = False
@@ -128,6 +138,7 @@ class Worker:
 
     def _work(self) -> None:
         patience: float | None = None
+        worked = 0.0
         while True:
             with self._wake:
                 asked = self._wake.wait_for(self._asked, patience)
@@ -136,18 +147,29 @@ class Worker:
                 if asked:
                     task = self._running = self._waiting.pop(next(iter(self._waiting)))
             if not asked:
-                give_back()
-                patience = None
+                patience = self._rest()
                 continue
             patience, start = self._REST, time.monotonic()
             self._do(task)
-            if time.monotonic() - start > self._LONG:
+            worked += time.monotonic() - start
+            if worked > self._LONG:
                 give_back()
+                worked = 0.0
             with self._wake:
                 self._running = None
                 idle = not self._waiting
             if idle:
                 self._say(None)
+
+    def _rest(self) -> float | None:
+        """Do something that was left for now; return how long to wait for a job then."""
+        step = next(self._at_rest, None)
+        if step is None:
+            give_back()
+            return None
+        with suppress(Exception):
+            step()
+        return self._BREATH
 
     def _asked(self) -> bool:
         return bool(self._waiting) or self._ended

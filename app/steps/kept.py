@@ -9,9 +9,11 @@ import msgspec
 from lutcore.progress import Progress, silent
 
 T = TypeVar("T")
-# Of each kind of step, the last few results; a light that is dragged pushes out nothing else.
-_KEPT = 6
-_KEPT_OF = {"exitance": 8, "light": 8, "draft": 4}
+# Of each kind of step, the last few results, enough for four views side by side; a light that is
+# dragged pushes out nothing else.
+_KEPT = 4
+# Inputs are made in a millisecond of what others keep, and would hold that beyond its time.
+_KEPT_OF = {"exitance": 8, "light": 8, "inputs": 2}
 
 
 class Kept:

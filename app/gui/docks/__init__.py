@@ -81,6 +81,10 @@ class Dock(QDockWidget):
     def _on_visibility(self, visible: bool) -> None:
         if visible:
             self.fill()
+        if self.content is not None:
+            # Behind another tab Qt leaves it shown, out of sight: it would go on computing, and
+            # marking what is in the view.
+            self.content.setVisible(visible)
 
 
 def add_all(window: "Window") -> dict[str, Dock]:

@@ -165,14 +165,14 @@ class CurvaturePanel(QWidget):
         self.scale.measure(outcome)
         self._follow_range()
         measured = (
-            outcome.curvatures,
+            outcome.measured,
             outcome.mm_per_unit,
             session.quantity,
             session.peers,
             session.percentiles,
             session.symmetric,
         )
-        if session.quantity == "all" or _same(measured, self._measured):
+        if session.quantity == "all" or measured == self._measured:
             return
         self._measured = measured
         self._controller.run(
@@ -184,8 +184,3 @@ class CurvaturePanel(QWidget):
     def _on_distribution(self, found: Distribution) -> None:
         self._found = found
         self._follow_range()
-
-
-def _same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
-    # Arrays are the same ones or not the same: comparing them would take as long as measuring.
-    return bool(other) and one[0] is other[0] and one[1:] == other[1:]

@@ -17,6 +17,11 @@ _PATIENCE = 60_000  # ms
 def screen() -> None:
     """A virtual screen of our own, whatever screen there is: tests must not depend on it."""
     start_screen()
+    from qtpy.QtCore import Qt
+    from qtpy.QtWidgets import QApplication
+
+    # Those of a desktop would wait for a person.
+    QApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
 
 
 @pytest.fixture
@@ -74,9 +79,13 @@ def window(open_window):
 
 def settled(qtbot, window, timeout: int = 240_000) -> None:
     """Wait until all that was asked for has been computed and drawn."""
+    worker = window.controller.worker
     qtbot.wait(1)
-    qtbot.waitUntil(lambda: not window.controller.worker.busy, timeout=timeout)
-    qtbot.wait(20)
+    while True:
+        qtbot.waitUntil(lambda: not worker.busy, timeout=timeout)
+        qtbot.wait(20)  # what a job gave is taken, and may ask for another
+        if not worker.busy:
+            return
 
 
 def pixels(window):

@@ -6,6 +6,7 @@ from qtpy.QtCore import QPoint, Qt
 
 from lutcore.costs import PREDICTION, Cost, candidates
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import click_menu, tick
 from tests.app.gui.mouse import move
 
 
@@ -16,7 +17,7 @@ def choose(window, qtbot, monkeypatch):
     costs[PREDICTION] = Cost(5.0, "n")
     monkeypatch.setattr("app.costs.known", lambda: True)
     monkeypatch.setattr("app.choosing.measured", lambda progress, again: costs)
-    window.act(window.actions_["window.choose"])
+    click_menu(qtbot, window, "Window", "Choose")
     panel = window.docks["choose"].fill()
     qtbot.waitUntil(lambda: panel.choosing.needs is not None, timeout=300_000)
     settled(qtbot, window)
@@ -60,18 +61,18 @@ def test_the_tolerance_moves_the_choice(window, qtbot, choose) -> None:
 
 def test_the_map_colors_the_mesh_and_goes_away(window, qtbot, choose) -> None:
     before = pixels(window)
-    choose.map.click()
+    tick(qtbot, choose.map)
     qtbot.waitUntil(lambda: choose.choosing.map is not None, timeout=240_000)
     settled(qtbot, window)
     assert choose.legend.count() == len(choose.choosing.map.labels) + 1
     assert (pixels(window) != before).any(axis=2).mean() > 0.1
-    choose.map.click()
+    tick(qtbot, choose.map)
     settled(qtbot, window)
     np.testing.assert_array_equal(pixels(window), before)
 
 
 def test_the_table_is_brushed_in_both_directions(window, qtbot) -> None:
-    window.act(window.actions_["window.table"])
+    click_menu(qtbot, window, "Window", "Table")
     panel = window.docks["table"].fill()
     settled(qtbot, window)
     qtbot.waitUntil(lambda: panel._arguments is not None, timeout=240_000)

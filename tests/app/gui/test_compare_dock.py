@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import Qt
 
 from app.camera import axes
 from app.gui import versus
@@ -10,21 +10,15 @@ from app.gui.facing import facing
 from app.scene import Surface
 from app.session import Camera, Directional, Method, Session, Substance
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import choose, click_tab, tick, type_in, undo
 
 
 @pytest.fixture
 def panel(window, qtbot):
     dock = window.docks["compare"]
-    dock.show()
-    dock.raise_()
+    click_tab(qtbot, window, "Compare")
     qtbot.waitUntil(lambda: dock.content is not None)
     return dock.content
-
-
-def _click(qtbot, button) -> None:
-    """On the mark: the room beside the words takes no clicks."""
-    at = QPoint(8, button.height() // 2)
-    qtbot.mouseClick(button, Qt.MouseButton.LeftButton, pos=at)
 
 
 def _names(window):
@@ -49,18 +43,18 @@ def test_entering_compares_the_model_with_the_plainest(window, qtbot) -> None:
 
 
 def test_names_and_parameters_are_chosen_in_the_dock(window, panel, qtbot) -> None:
-    _click(qtbot, panel.modes["swipe"])
+    tick(qtbot, panel.modes["swipe"])
     settled(qtbot, window)
     assert window.controller.session.wipe == 0.5
-    _click(qtbot, panel.modes["side"])
+    tick(qtbot, panel.modes["side"])
     settled(qtbot, window)
     assert window.controller.session.wipe is None
-    panel.sides[1].names.setCurrentText("wrap")
+    choose(qtbot, panel.sides[1].names, "wrap")
     settled(qtbot, window)
     assert _names(window) == ["curvature-lut", "wrap"]
     before = window.controller.outcome.composition.panels[1].content.rgb
     width = panel.sides[1].form.controls["width"]
-    width.number.setValue(0.7)
+    type_in(qtbot, width.number, "0.7")
     settled(qtbot, window)
     assert window.controller.session.compared[1] == Method("wrap", {"width": 0.7})
     made = window.controller.outcome.composition
@@ -73,20 +67,20 @@ def test_names_and_parameters_are_chosen_in_the_dock(window, panel, qtbot) -> No
 
 
 def test_four_views_have_one_camera_and_a_swipe_leaves_two(window, panel, qtbot) -> None:
-    _click(qtbot, panel.modes["side"])
+    tick(qtbot, panel.modes["side"])
     assert not panel.sides[3].isVisibleTo(panel)
-    panel.sides[2].names.setCurrentText("wrap")
-    panel.sides[3].names.setCurrentText("kubo2010")
+    choose(qtbot, panel.sides[2].names, "wrap")
+    choose(qtbot, panel.sides[3].names, "kubo2010")
     settled(qtbot, window)
     assert len(window.canvas.renderers()) == 4
-    window.controller.look("top")
+    qtbot.keyClick(window, Qt.Key.Key_7)
     settled(qtbot, window)
     views = [one.renderer.GetActiveCamera() for one in window.canvas.renderers()]
     assert len({view.GetPosition() for view in views}) == 1
     assert len({view.GetClippingRange() for view in views}) == 1
-    panel.sides[2].names.setCurrentText("none")
+    choose(qtbot, panel.sides[2].names, "none")
     assert _names(window) == ["curvature-lut", "lambert", "kubo2010"]
-    _click(qtbot, panel.modes["swipe"])
+    tick(qtbot, panel.modes["swipe"])
     settled(qtbot, window)
     assert _names(window) == ["curvature-lut", "lambert"]
     assert len(window.canvas.renderers()) == 1
@@ -96,13 +90,14 @@ def test_four_views_have_one_camera_and_a_swipe_leaves_two(window, panel, qtbot)
 def test_estimators_and_materials_are_compared_as_well(window, panel, qtbot, kind) -> None:
     failures = []
     window.controller.failed.connect(failures.append)
-    panel.kind.setCurrentIndex(panel.kind.findData(kind))
+    choose(qtbot, panel.kind, panel.kind.itemText(panel.kind.findData(kind)))
     settled(qtbot, window)
     session = window.controller.session
     assert session.compared_by == kind
     assert len(window.canvas.renderers()) == 2
     assert not failures
-    window.controller.document.undo()
+    while window.controller.session.compared_by != "model":
+        undo(qtbot, window)
     settled(qtbot, window)
     assert window.controller.session.compared_by == "model"
     assert panel.kind.currentData() == "model"
@@ -111,7 +106,7 @@ def test_estimators_and_materials_are_compared_as_well(window, panel, qtbot, kin
 def test_the_difference_is_told_and_its_worst_point_faced(window, panel, qtbot) -> None:
     # A light that stays where it is, or another point would be the worst from elsewhere.
     window.controller.change("lights", lights=(Directional((1.0, 0.2, 0.1)),))
-    _click(qtbot, panel.difference)
+    tick(qtbot, panel.difference)
     settled(qtbot, window)
     (label,) = panel.apart.texts
     (found,) = window.controller.outcome.composition.difference.values()

@@ -1,14 +1,18 @@
 """The curvature dock: every control changes the session, and follows it."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
 
 from app.gui.form import ParameterForm
-from app.session import Method, Session
+from app.gui.showing import SWITCHES
+from app.session import Method, Quantity, Session
 from lutcore.estimation import estimator_registry
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import choose, click_menu, click_tab, tick, type_in
 from tests.app.gui.mouse import move
 
 
@@ -22,51 +26,57 @@ def window(open_window):
 @pytest.fixture
 def panel(window, qtbot):
     dock = window.docks["curvature"]
-    dock.show()
-    dock.raise_()
+    click_tab(qtbot, window, "Curvature")
     qtbot.waitUntil(lambda: dock.content is not None and dock.content.isVisible())
     settled(qtbot, window)
     qtbot.waitUntil(lambda: dock.content._found is not None)
     return dock.content
 
 
-def _choose(qtbot, box, text: str) -> None:
-    """Choose from a combo box by its keys."""
-    box.setFocus()
-    index = box.findText(text, Qt.MatchFlag.MatchStartsWith)
-    assert index >= 0
-    step = Qt.Key.Key_Down if index > box.currentIndex() else Qt.Key.Key_Up
-    for _ in range(abs(index - box.currentIndex())):
-        qtbot.keyClick(box, step)
-
-
-def _tick(qtbot, box) -> None:
-    """Click a check box where its square is: beyond its words it is no part of it."""
-    qtbot.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(8, box.height() // 2))
-
-
 def test_a_quantity_is_chosen_and_undone(window, panel, qtbot) -> None:
     before = pixels(window)
-    _choose(qtbot, panel.quantity, "Gauss")
+    choose(qtbot, panel.quantity, "Gauss")
     settled(qtbot, window)
     assert window.controller.session.quantity == "gauss"
     assert (pixels(window) != before).any()
     assert panel._found.quantity.power == 2
     while window.controller.document.undo_label:
-        window.controller.document.undo()
+        qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     settled(qtbot, window)
     assert panel.quantity.currentData() == "curvedness"
 
 
+def test_every_quantity_is_shown_in_its_own_range(window, panel, qtbot) -> None:
+    seen = []
+    while panel.quantity.currentIndex() > 0:
+        qtbot.keyClick(panel.quantity, Qt.Key.Key_Up)
+    for index in range(panel.quantity.count()):
+        settled(qtbot, window)
+        name = panel.quantity.currentData()
+        assert window.controller.outcome.session.quantity == name
+        ranges = window.controller.outcome.composition.ranges
+        if name != "all":
+            assert list(ranges) == [name]
+            assert panel.range.bar.ends == ranges[name]
+            low, high = panel.range.low.value(), panel.range.high.value()
+            assert (low, high) == pytest.approx(ranges[name], rel=1e-3)
+        seen.append((name, pixels(window).tobytes()))
+        if index < panel.quantity.count() - 1:
+            qtbot.keyClick(panel.quantity, Qt.Key.Key_Down)
+    assert {name for name, _ in seen} == set(get_args(Quantity))
+    assert len({picture for _, picture in seen}) == len(seen)
+
+
 def test_choosing_a_quantity_leaves_the_shading(window, panel, qtbot) -> None:
-    window.controller.change("view", view="shade")
+    qtbot.keyClick(window, Qt.Key.Key_F2)
     settled(qtbot, window)
-    _choose(qtbot, panel.quantity, "curvature k1")
+    assert window.controller.outcome.session.view == "shade"
+    choose(qtbot, panel.quantity, "curvature k1")
     assert window.controller.session.view == "curvature"
 
 
 def test_disagreement_asks_several_estimators(window, panel, qtbot) -> None:
-    window.act(window.actions_["curvature.show_disagreement"])
+    click_menu(qtbot, window, "Curvature", "Quantity", "Disagreement")
     settled(qtbot, window)
     assert len(window.controller.session.peers) == 3
     assert "disagreement" in window.controller.outcome.composition.ranges
@@ -93,37 +103,33 @@ def test_the_range_is_dragged_as_one_step_and_made_automatic_again(window, panel
     settled(qtbot, window)
     assert window.controller.session.range is None
     np.testing.assert_array_equal(pixels(window), before)
-    window.controller.document.undo()
-    window.controller.document.undo()
+    for _ in range(2):
+        qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert window.controller.session.range is None
     assert window.controller.document.undo_label is None
 
 
 def test_the_ends_are_typed(window, panel, qtbot) -> None:
-    high = panel.range.high
-    high.setFocus()
-    high.selectAll()
-    qtbot.keyClicks(high, "0.5")
-    qtbot.keyClick(high, Qt.Key.Key_Return)
+    type_in(qtbot, panel.range.high, "0.5")
     settled(qtbot, window)
     assert window.controller.session.range[1] == 0.5
     assert panel.range.bar.ends[1] == 0.5
 
 
 def test_a_symmetric_range_moves_both_ends(window, panel, qtbot) -> None:
-    _choose(qtbot, panel.quantity, "mean")
-    _tick(qtbot, panel.switches["symmetric"])
+    choose(qtbot, panel.quantity, "mean")
+    tick(qtbot, panel.switches["symmetric"])
     settled(qtbot, window)
     low, high = panel.range.bar.ends
     assert low == -high
-    panel.range.high.setValue(0.3)
+    type_in(qtbot, panel.range.high, "0.3")
     settled(qtbot, window)
     assert window.controller.session.range == (-0.3, 0.3)
 
 
 def test_percentiles_are_chosen(window, panel, qtbot) -> None:
     low, high = panel.range.bar.ends
-    _choose(qtbot, panel.range.percentiles, "0 to 100")
+    choose(qtbot, panel.range.percentiles, "0 to 100")
     settled(qtbot, window)
     assert window.controller.session.percentiles == (0.0, 100.0)
     assert panel.range.bar.ends[0] <= low
@@ -132,19 +138,19 @@ def test_percentiles_are_chosen(window, panel, qtbot) -> None:
 
 def test_a_locked_range_stays_for_another_mesh(window, panel, qtbot) -> None:
     ends = panel.range.bar.ends
-    window.controller.open("sample:sphere")
+    click_menu(qtbot, window, "File", "Sample meshes", "sphere")
     settled(qtbot, window)
     assert window.controller.session.range is None
-    window.controller.document.undo()
+    qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     settled(qtbot, window)
-    _tick(qtbot, panel.range.lock)
+    tick(qtbot, panel.range.lock)
     settled(qtbot, window)
-    window.controller.open("sample:sphere")
+    click_menu(qtbot, window, "File", "Sample meshes", "sphere")
     settled(qtbot, window)
     assert window.controller.session.mesh == "sample:sphere"
     assert window.controller.outcome.composition.ranges["curvedness"] == ends
     # Of another unit it is no range any more.
-    window.act(window.actions_["curvature.show_gauss"])
+    choose(qtbot, panel.quantity, "Gauss")
     assert window.controller.session.range is None
     assert not window.controller.range_locked
 
@@ -152,40 +158,66 @@ def test_a_locked_range_stays_for_another_mesh(window, panel, qtbot) -> None:
 def test_switches_menu_and_session_agree(window, panel, qtbot) -> None:
     for name, switch in panel.switches.items():
         before = pixels(window)
-        _tick(qtbot, switch)
+        tick(qtbot, switch)
         settled(qtbot, window)
         assert getattr(window.controller.session, name)
         assert window.qactions[f"curvature.{name}"].isChecked()
-        if name != "fade":  # a torus this exact has nothing to fade
+        if name != "fade":  # a torus this exact has nothing to fade; see below
             assert (pixels(window) != before).any(), name
-        window.act(window.actions_[f"curvature.{name}"])
+        click_menu(qtbot, window, "Curvature", SWITCHES[name][0])
         settled(qtbot, window)
         assert not switch.isChecked()
         np.testing.assert_array_equal(pixels(window), before)
 
 
+def test_what_is_below_its_error_fades_to_grey(open_window, qtbot) -> None:
+    estimator = Method("rusinkiewicz2004")
+    window = open_window(Session(mesh="sample:bunny", view="curvature", estimator=estimator))
+    panel = window.docks["curvature"].fill()
+    click_tab(qtbot, window, "Curvature")
+    settled(qtbot, window)
+    before = pixels(window).astype(int)
+    tick(qtbot, panel.switches["fade"])
+    settled(qtbot, window)
+    after = pixels(window).astype(int)
+    changed = np.abs(after - before).max(axis=2) > 20
+    assert changed.mean() > 0.001
+    vivid = np.ptp(before, axis=2)[changed].mean()
+    assert np.ptp(after, axis=2)[changed].mean() < 0.5 * vivid
+    tick(qtbot, panel.switches["fade"])
+    settled(qtbot, window)
+    np.testing.assert_array_equal(pixels(window), before)
+
+
 def test_estimator_parameters_and_scale(window, panel, qtbot) -> None:
-    _choose(qtbot, panel.estimator.names, "auto")
+    choose(qtbot, panel.estimator.names, "auto")
     settled(qtbot, window)
     assert window.controller.session.estimator == Method("auto")
     form = panel.estimator.form
-    form.controls["steadiness"].number.setValue(5.0)
+    type_in(qtbot, form.controls["steadiness"].number, "5")
     settled(qtbot, window)
     assert window.controller.session.estimator == Method("auto", {"steadiness": 5.0})
     qtbot.mouseClick(form.reset, Qt.MouseButton.LeftButton)
     assert window.controller.session.estimator == Method("auto")
     window.controller.change("unit", mm_per_unit=10.0)
     settled(qtbot, window)
-    _tick(qtbot, panel.scale.auto)
-    panel.scale.slider.number.setValue(8.0)
+    automatic = pixels(window)
+    tick(qtbot, panel.scale.auto)
+    type_in(qtbot, panel.scale.slider.number, "8")
     settled(qtbot, window)
-    # Shown in millimetres, kept in mesh units.
+    # Shown in millimetres, kept in mesh units; the longer the flatter.
     assert window.controller.session.scale == pytest.approx(0.8)
-    assert np.median(window.controller.outcome.curvatures.scale) == pytest.approx(0.8)
+    assert (pixels(window) != automatic).any()
+    tick(qtbot, panel.scale.auto)
+    settled(qtbot, window)
+    assert window.controller.session.scale is None
+    np.testing.assert_array_equal(pixels(window), automatic)
+    # The slider stands where the automatic scale is.
+    assert 0.0 < panel.scale.slider.value < 8.0
 
 
 def test_colour_maps_follow_the_session(window, panel, qtbot) -> None:
-    _choose(qtbot, panel.colormap, "cividis")
+    choose(qtbot, panel.colormap, "cividis")
     assert window.controller.session.colormap == "cividis"
     window.controller.change("colour map", colormap="Spectral")
     assert panel.colormap.currentText() == "Spectral"
@@ -193,14 +225,14 @@ def test_colour_maps_follow_the_session(window, panel, qtbot) -> None:
     assert panel.colormap.currentText() == "twilight"
     window.controller.change("more", percentiles=(3.0, 97.0))
     assert panel.range.percentiles.currentText() == "3 to 97 %"
-    _choose(qtbot, panel.colormap, "green to red")
+    choose(qtbot, panel.colormap, "green to red")
     assert window.controller.session.colormap is None
 
 
 def test_with_all_quantities_there_is_no_one_range(window, panel, qtbot) -> None:
-    panel.range.high.setValue(0.4)
+    type_in(qtbot, panel.range.high, "0.4")
     settled(qtbot, window)
-    window.act(window.actions_["curvature.show_all"])
+    click_menu(qtbot, window, "Curvature", "Quantity", "All")
     settled(qtbot, window)
     assert len(window.controller.outcome.composition.ranges) == 8
     assert not window.banner.isVisible()

@@ -3,9 +3,10 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QPoint, QRect, QSize, Qt
 from qtpy.QtWidgets import (
     QAbstractButton,
     QAbstractSpinBox,
@@ -13,6 +14,7 @@ from qtpy.QtWidgets import (
     QDialog,
     QLabel,
     QLineEdit,
+    QMessageBox,
     QScrollArea,
     QSizeGrip,
     QStyle,
@@ -22,8 +24,10 @@ from qtpy.QtWidgets import (
 )
 
 from app.gui.picture_dialog import PictureDialog
+from app.gui.scatter import Dot, Scatter
 from app.session import Method, Session
 from tests.app.gui.conftest import settled
+from tests.app.gui.hands import answered, click_menu
 from tests.app.gui.test_keys import DOCKS
 
 SIZES = [(1280, 800), (632, 370)]
@@ -157,6 +161,45 @@ def test_the_dialog_of_pictures_fits(sized, qtbot) -> None:
     dialog.show()
     qtbot.waitUntil(dialog.isVisible)
     assert faults(dialog) == []
+
+
+def test_the_question_about_changes_fits(sized, qtbot) -> None:
+    found = []
+
+    def look(dialog) -> None:
+        found.extend(faults(dialog))
+        inside = dialog.width() <= sized.width() and dialog.height() <= sized.height()
+        found.extend([] if inside else ["wider than the window"])
+        qtbot.keyClick(dialog, Qt.Key.Key_Escape)
+
+    click_menu(qtbot, sized, "Curvature", "Flip colours")
+    with answered(QMessageBox, look):
+        qtbot.keyClick(sized, Qt.Key.Key_Q, Qt.KeyboardModifier.ControlModifier)
+    assert found == []
+
+
+def test_labels_of_the_chart_are_not_struck_out(qtbot) -> None:
+    chart = Scatter(None, "time", "error")
+    qtbot.addWidget(chart)
+    chart.resize(400, 300)
+    dots = (Dot("left", 1.0, 1e-2, 0.0), Dot("right", 1e4, 1e-4, 0.0))
+    pictures = []
+    for front in (False, True):
+        chart.show_dots([replace(dot, front=front) for dot in dots], None)
+        pictures.append(chart.grab().toImage())
+    # The line from dot to dot begins under the label.
+    at = chart.place(0).toPoint() + QPoint(
+        9 + chart.fontMetrics().horizontalAdvance("left") // 2, 0
+    )
+    box = QRect(at - QPoint(8, 6), QSize(16, 12))
+    plain, lined = (one.copy(box) for one in pictures)
+    differ = [
+        abs(plain.pixelColor(x, y).lightness() - lined.pixelColor(x, y).lightness())
+        for x in range(box.width())
+        for y in range(box.height())
+    ]
+    assert max(differ) < 80
+    assert pictures[0] != pictures[1]
 
 
 def test_what_is_cut_or_covered_is_found(window, qtbot) -> None:

@@ -7,6 +7,7 @@ from qtpy.QtCore import Qt
 from app.gui.settings import Settings
 from app.session import Method, Repair, Session
 from tests.app.gui.conftest import settled
+from tests.app.gui.hands import click_menu, click_tab, type_in, undo
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -36,8 +37,7 @@ def window(open_window, tmp_path):
 @pytest.fixture
 def panel(window, qtbot):
     dock = window.docks["health"]
-    dock.show()
-    dock.raise_()
+    click_menu(qtbot, window, "Window", "Health")
     qtbot.waitUntil(lambda: dock.content is not None and dock.content.isVisible())
     _rest(qtbot, window)
     return dock.content
@@ -67,11 +67,14 @@ def test_repairs_are_done_undone_and_left_out(window, panel, qtbot) -> None:
     assert panel.remarks.text() == "Nothing is odd."
     assert panel.done.count() == 2
     assert window.controller.document.undo_label == "fill holes, 100 edges"
-    window.controller.document.undo()
+    undo(qtbot, window)
     _rest(qtbot, window)
     assert "7 faces" in panel.counts.text()
-    window.controller.document.redo()
-    panel.done.setCurrentRow(0)
+    keys = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    qtbot.keyClick(window, Qt.Key.Key_Z, keys)
+    _rest(qtbot, window)
+    first = panel.done.visualItemRect(panel.done.item(0))
+    qtbot.mouseClick(panel.done.viewport(), LEFT, pos=first.center())
     qtbot.mouseClick(panel.leave_out, LEFT)
     _rest(qtbot, window)
     assert window.controller.session.repairs == (Repair("holes", 100.0),)
@@ -82,8 +85,50 @@ def test_repairs_are_done_undone_and_left_out(window, panel, qtbot) -> None:
     assert not panel.leave_out.isEnabled()
 
 
+def test_vertices_are_merged_faces_turned_and_their_number_reduced(open_window, qtbot, tmp_path):
+    """Two patches that share a seam but no vertex, the second one inside out."""
+    rows = 9
+    x, y = (one.ravel() for one in np.meshgrid(np.arange(rows), np.arange(rows)))
+    corner = np.array([i for i in range(rows * (rows - 1)) if i % rows != rows - 1])
+    one = np.stack(
+        [corner, corner + 1, corner + rows, corner + 1, corner + rows + 1, corner + rows]
+    )
+    one = one.T.reshape(-1, 3) + 1
+    lines = [f"v {a} {b} {0.1 * a * b}" for a, b in zip(x, y, strict=True)]
+    lines += [f"v {-a} {b} {0.1 * a * b}" for a, b in zip(x, y, strict=True)]
+    faces = np.vstack([one, one + rows * rows])  # mirrored, so that the second faces down
+    lines += ["f " + " ".join(map(str, face)) for face in faces]
+    path = tmp_path / "seam.obj"
+    path.write_text("\n".join(lines) + "\n")
+    window = open_window(_fast(str(path)), size=(1200, 900))
+    click_menu(qtbot, window, "Window", "Health")
+    panel = window.docks["health"].fill()
+    _rest(qtbot, window)
+    assert "162 vertices" in panel.counts.text()
+    qtbot.mouseClick(panel.buttons["merge"], LEFT)
+    _rest(qtbot, window)
+    assert "153 vertices" in panel.counts.text()
+    assert panel.buttons["orient"].isEnabled()
+    qtbot.mouseClick(panel.buttons["orient"], LEFT)
+    _rest(qtbot, window)
+    assert not panel.buttons["orient"].isEnabled()
+    type_in(qtbot, panel.numbers["decimate"], "100")
+    qtbot.mouseClick(panel.buttons["decimate"], LEFT)
+    _rest(qtbot, window)
+    assert len(window.controller.outcome.subject.mesh.faces) <= 100
+    assert [one.kind for one in window.controller.session.repairs] == [
+        "merge",
+        "orient",
+        "decimate",
+    ]
+    for _ in range(3):
+        undo(qtbot, window)
+        _rest(qtbot, window)
+    assert "162 vertices" in panel.counts.text()
+
+
 def test_a_repair_that_fails_changes_nothing(window, panel, qtbot) -> None:
-    panel.numbers["islands"].setValue(99.0)
+    type_in(qtbot, panel.numbers["islands"], "99")
     qtbot.mouseClick(panel.buttons["islands"], LEFT)
     _rest(qtbot, window)
     assert window.banner.isVisible()
@@ -106,7 +151,7 @@ def test_a_window_with_repairs_draws_what_the_command_line_draws(window, panel, 
 def test_another_mesh_comes_without_these_repairs(window, panel, qtbot) -> None:
     qtbot.mouseClick(panel.buttons["islands"], LEFT)
     _rest(qtbot, window)
-    window.controller.open("sample:sphere")
+    click_menu(qtbot, window, "File", "Sample meshes", "sphere")
     _rest(qtbot, window)
     assert window.controller.session.repairs == ()
     assert panel.remarks.text() == "Nothing is odd."
@@ -123,10 +168,10 @@ def test_the_unit_is_asked_once_for_each_file(open_window, qtbot, tmp_path) -> N
     _rest(qtbot, window)
     assert not bar.isVisible()
     assert window.controller.outcome.mm_per_unit == 1000.0
-    window.controller.open("sample:sphere")
+    click_menu(qtbot, window, "File", "Sample meshes", "sphere")
     _rest(qtbot, window)
     assert not bar.isVisible()
-    window.controller.open(tiny)
+    click_menu(qtbot, window, "File", "Open recent", "tiny.obj")
     _rest(qtbot, window)
     assert not bar.isVisible()
     assert window.controller.session.mm_per_unit == 1000.0
@@ -138,9 +183,9 @@ def test_an_open_answer_is_remembered_too(open_window, qtbot, tmp_path) -> None:
     window = open_window(_fast(tiny))
     _rest(qtbot, window)
     qtbot.mouseClick(window.unit_bar.close_, LEFT)
-    window.controller.open("sample:sphere")
+    click_menu(qtbot, window, "File", "Sample meshes", "sphere")
     _rest(qtbot, window)
-    window.controller.open(tiny)
+    click_menu(qtbot, window, "File", "Open recent", "tiny.obj")
     _rest(qtbot, window)
     assert not window.unit_bar.isVisible()
     assert window.controller.session.mm_per_unit is None
@@ -149,5 +194,8 @@ def test_an_open_answer_is_remembered_too(open_window, qtbot, tmp_path) -> None:
 def test_a_unit_given_elsewhere_ends_the_question(open_window, qtbot, tmp_path) -> None:
     window = open_window(_fast(_stl_of_parts(tmp_path / "tiny.obj", 1e-3)))
     _rest(qtbot, window)
-    window.controller.change("unit", mm_per_unit=100.0)
+    assert window.unit_bar.isVisible()
+    click_tab(qtbot, window, "Shading")
+    type_in(qtbot, window.docks["shading"].fill().unit.number, "100")
+    assert window.controller.session.mm_per_unit == 100.0
     assert not window.unit_bar.isVisible()

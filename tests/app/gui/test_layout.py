@@ -1,26 +1,24 @@
 """Docks, theme, log and the menus of what can be opened, from one run to the next."""
 
-from qtpy.QtCore import QMimeData, QPointF, Qt, QUrl
-from qtpy.QtGui import QDropEvent, QPalette
+from qtpy.QtGui import QPalette
 from qtpy.QtWidgets import QApplication
 
 from app.gui import theme
-from app.gui.open_menus import RECENT, SAMPLES
 from app.gui.settings import Settings
-from app.session import Session, write
-from tests.app.gui.conftest import settled
+from app.session import Session
+from tests.app.gui.hands import click_menu
 
 
-def test_docks_lie_where_they_were_left(open_window) -> None:
+def test_docks_lie_where_they_were_left(open_window, qtbot) -> None:
     window = open_window(Session(mesh="sample:sphere"))
     assert window.docks["log"].isHidden()
-    window.docks["log"].show()
-    window.docks["shading"].hide()
+    click_menu(qtbot, window, "Window", "Log")
+    click_menu(qtbot, window, "Window", "Shading")
     window.close()
     again = open_window(Session(mesh="sample:sphere"))
     assert not again.docks["log"].isHidden()
     assert again.docks["shading"].isHidden()
-    again.act(again.actions_["window.reset"])
+    click_menu(qtbot, again, "Window", "Reset layout")
     assert again.docks["log"].isHidden()
     assert not again.docks["shading"].isHidden()
 
@@ -62,50 +60,20 @@ def test_words_stand_out_in_both_themes() -> None:
 
 def test_a_theme_is_chosen_and_remembered(window, qtbot) -> None:
     before = QApplication.palette().window().color()
-    window.act(window.actions_["view.theme_dark"])
+    click_menu(qtbot, window, "View", "Theme", "Dark")
     assert QApplication.palette().window().color().lightness() < 80
     qtbot.waitUntil(lambda: window.palette().window().color().lightness() < 80)
     assert theme.chosen(Settings()) == "dark"
     assert window.qactions["view.theme_dark"].isChecked()
-    window.act(window.actions_["view.theme_system"])
+    click_menu(qtbot, window, "View", "Theme", "As the system")
     assert QApplication.palette().window().color() == before
 
 
 def test_the_log_holds_what_was_said_before_it_was_opened(window, qtbot) -> None:
     window.controller.noted.emit("said early")
-    window.docks["log"].show()
+    click_menu(qtbot, window, "Window", "Log")
     text = window.docks["log"].fill()
     assert "vertices" in text.toPlainText()
     assert "said early" in text.toPlainText()
     window.controller.failed.emit("said later")
     assert text.toPlainText().splitlines()[-1].endswith("said later")
-
-
-def test_recent_files_and_samples_open(window, qtbot) -> None:
-    for title in (RECENT, SAMPLES):
-        window.menus[title].aboutToShow.emit()
-    (first,) = window.menus[RECENT].actions()
-    assert first.text() == "sample:sphere"
-    saddle = next(one for one in window.menus[SAMPLES].actions() if one.text() == "saddle")
-    saddle.trigger()
-    settled(qtbot, window)
-    assert window.controller.session.mesh == "sample:saddle"
-    window.menus[RECENT].aboutToShow.emit()
-    assert [one.text() for one in window.menus[RECENT].actions()] == [
-        "sample:saddle",
-        "sample:sphere",
-    ]
-
-
-def test_a_session_that_is_dropped_opens(window, qtbot, tmp_path) -> None:
-    file = tmp_path / "kept.json"
-    write(Session(mesh="sample:saddle", view="curvature"), file)
-    data = QMimeData()
-    data.setUrls([QUrl.fromLocalFile(str(file))])
-    copy, left = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton
-    keys = Qt.KeyboardModifier.NoModifier
-    window.dropEvent(QDropEvent(QPointF(300, 300), copy, data, left, keys))
-    settled(qtbot, window)
-    assert window.controller.session.mesh == "sample:saddle"
-    assert window.controller.document.path == file
-    assert window.controller.outcome.session.view == "curvature"

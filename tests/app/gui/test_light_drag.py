@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
+from qtpy.QtWidgets import QStyle, QStyleOptionSlider
 
 from app import costs
 from app.gui.aiming import place_of
@@ -16,6 +17,7 @@ from app.settling import model_of
 from lutcore.choice import choose
 from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import click_tab, undo
 from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
@@ -23,7 +25,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 @pytest.fixture
 def view(qtbot, window):
-    window.docks["lights"].raise_()
+    click_tab(qtbot, window, "Lights")
     content = window.docks["lights"].fill()
     settled(qtbot, window)
     qtbot.waitUntil(content.isVisible)
@@ -99,14 +101,24 @@ def _colours(view):
 
 
 def test_a_material_that_is_dragged_is_shaded_exactly(qtbot, view):
-    view.controller.begin_drag()
-    view.controller.change("material", material="skin2")
+    click_tab(qtbot, view, "Shading")
+    slider = view.docks["shading"].fill().material.scattering[0].slider
     settled(qtbot, view)
+    option = QStyleOptionSlider()
+    slider.initStyleOption(option)
+    part = QStyle.SubControl.SC_SliderHandle
+    grip = slider.style().subControlRect(QStyle.ComplexControl.CC_Slider, option, part, slider)
+    QTest.mousePress(slider, LEFT, pos=grip.center())
+    move(qtbot, slider, grip.center() + QPoint(15, 0))
+    settled(qtbot, view)
+    assert view.controller.outcome.session.material.scattering[0] > 0.74
     held = view.controller.outcome.composition.exposure
     made = compose(view.controller.outcome.session, Pipeline(), held)
     np.testing.assert_array_equal(made.panels[0].content.rgb, _colours(view)[1])
-    view.controller.end_drag()
+    QTest.mouseRelease(slider, LEFT, pos=grip.center() + QPoint(15, 0))
     settled(qtbot, view)
+    undo(qtbot, view)
+    assert view.controller.session.material == "skin1"
 
 
 def test_a_drag_is_one_step_however_long_it_takes(qtbot, view, monkeypatch):
@@ -114,9 +126,9 @@ def test_a_drag_is_one_step_however_long_it_takes(qtbot, view, monkeypatch):
     before = view.controller.session.lights
     drag(qtbot, view.canvas, handle(view, 0), QPoint(-15, 0))
     drag(qtbot, view.canvas, handle(view, 0), QPoint(-5, 5))
-    view.controller.document.undo()
+    undo(qtbot, view)
     middle = view.controller.session.lights
-    view.controller.document.undo()
+    undo(qtbot, view)
     assert view.controller.session.lights == before != middle
     settled(qtbot, view)
 
@@ -166,6 +178,18 @@ def test_handles_are_seen_only_with_the_dock_and_never_saved(qtbot, view):
     # Rounding of a colour between vertices may differ with multisampling.
     assert np.abs(saved[patch].astype(int) - bare[patch]).max() <= 2
     assert np.abs(saved[patch].astype(int) - shown[patch]).max() > 50
+
+
+def test_handles_go_when_another_tab_covers_the_dock(qtbot, view):
+    at = handle(view, 0)
+    patch = np.s_[at.y() - 4 : at.y() + 5, at.x() - 4 : at.x() + 5]
+    shown = pixels(view)[patch]
+    click_tab(qtbot, view, "Shading")
+    qtbot.waitUntil(lambda: not view.light_tool.handles.shown)
+    assert (pixels(view)[patch] != shown).any()
+    click_tab(qtbot, view, "Lights")
+    qtbot.waitUntil(lambda: view.light_tool.handles.shown)
+    np.testing.assert_array_equal(pixels(view)[patch], shown)
 
 
 def test_the_chosen_light_survives_that_others_go(window):

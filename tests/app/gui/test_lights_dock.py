@@ -2,19 +2,20 @@
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
-from qtpy.QtGui import QColor
+from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
+from qtpy.QtWidgets import QApplication
 
 from app.gui.aiming import from_ball, kept_in, on_ball, seen_by, turned
 from app.session import Camera, Cone, Directional, Point
-from tests.app.gui.conftest import settled
+from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import choose, click_tab, colored, type_in, undo
 from tests.app.gui.mouse import move
 
 
 @pytest.fixture
 def panel(qtbot, window):
-    window.docks["lights"].raise_()
+    click_tab(qtbot, window, "Lights")
     content = window.docks["lights"].fill()
     settled(qtbot, window)
     qtbot.waitUntil(content.isVisible)
@@ -23,6 +24,23 @@ def panel(qtbot, window):
 
 def click(button):
     QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+
+
+def _add(qtbot, panel, kind: str) -> None:
+    """Click the button, then the entry of its menu, which waits for one."""
+
+    def pick() -> None:
+        menu = QApplication.activePopupWidget()
+        (entry,) = (one for one in menu.actions() if one.text().lower() == kind.lower())
+        QTest.mouseClick(menu, Qt.MouseButton.LeftButton, pos=menu.actionGeometry(entry).center())
+
+    timer = QTimer()
+    timer.timeout.connect(lambda: QApplication.activePopupWidget() and pick())
+    timer.start(50)
+    count = panel.list.count()
+    click(panel.add)
+    qtbot.waitUntil(lambda: panel.list.count() == count + 1)
+    timer.stop()
 
 
 def at(ball, direction) -> QPoint:
@@ -51,7 +69,7 @@ def test_a_light_of_either_frame_is_seen_and_kept():
 
 
 def test_lights_are_added_doubled_and_removed(qtbot, window, panel):
-    panel.add.menu().actions()[1].trigger()
+    _add(qtbot, panel, "Point")
     lights = window.controller.session.lights
     assert isinstance(lights[2], Point) and panel.list.currentRow() == 2
     click(panel.duplicate)
@@ -62,7 +80,7 @@ def test_lights_are_added_doubled_and_removed(qtbot, window, panel):
     for _ in range(2):
         click(panel.remove)
     assert window.controller.session.lights == () and not panel.remove.isEnabled()
-    window.act(window.actions_["edit.undo"])
+    undo(qtbot, window)
     assert len(window.controller.session.lights) == 1
     settled(qtbot, window)
 
@@ -71,8 +89,7 @@ def test_another_kind_is_as_bright_from_the_same_side(qtbot, window, panel):
     camera = window.canvas.camera
     first = window.controller.session.lights[0]
     world = kept_in(Directional(first.direction), first.direction, camera)
-    panel.form.kind.setCurrentIndex(panel.form.kind.findData("cone"))
-    panel.form.kind.activated.emit(panel.form.kind.currentIndex())
+    choose(qtbot, panel.form.kind, panel.form.kind.itemText(panel.form.kind.findData("cone")))
     cone = window.controller.session.lights[0]
     assert isinstance(cone, Cone)
     back = np.subtract(cone.position, camera.target)
@@ -96,13 +113,14 @@ def test_a_dot_is_dragged_on_the_ball_in_one_step(qtbot, window, panel):
     moved = window.controller.session.lights[1]
     # Half a pixel of the ball's radius.
     np.testing.assert_allclose(moved.direction, (0.0, 0.0, 1.0), atol=0.03)
-    window.act(window.actions_["edit.undo"])
+    undo(qtbot, window)
     assert window.controller.session.lights[1] == second
     settled(qtbot, window)
 
 
-def test_arrow_keys_turn_the_chosen_light(window, panel):
-    panel.list.setCurrentRow(0)
+def test_arrow_keys_turn_the_chosen_light(qtbot, window, panel):
+    first = panel.list.visualItemRect(panel.list.item(0)).center()
+    qtbot.mouseClick(panel.list.viewport(), Qt.MouseButton.LeftButton, pos=first)
     before = np.asarray(window.controller.session.lights[0].direction)
     panel.ball.setFocus()
     QTest.keyClick(panel.ball, Qt.Key.Key_Left)
@@ -110,19 +128,39 @@ def test_arrow_keys_turn_the_chosen_light(window, panel):
     assert after[0] < before[0]
 
 
-def test_colour_and_strength_are_apart(window, panel):
-    panel.form.paint(QColor(255, 0, 0))
+def test_colour_and_strength_are_apart(qtbot, window, panel):
+    before = pixels(window).astype(int)
+    with colored("#ff0000"):
+        click(panel.form.color)
+    settled(qtbot, window)
     assert window.controller.session.lights[0].irradiance == (1.0, 0.0, 0.0)
-    panel.form.strength.number.setValue(2.0)
+    type_in(qtbot, panel.form.strength.number, "2")
+    settled(qtbot, window)
     assert window.controller.session.lights[0].irradiance == (2.0, 0.0, 0.0)
+    # The one that is lit by it alone has lost all green.
+    mesh = (before != before[2, 2]).any(axis=2)
+    after = pixels(window).astype(int)
+    assert np.median(after[mesh][:, 1]) < 0.7 * np.median(before[mesh][:, 1])
+
+
+def test_a_cone_is_narrowed_and_moved_by_what_is_typed(qtbot, window, panel):
+    _add(qtbot, panel, "Cone")
+    settled(qtbot, window)
+    type_in(qtbot, panel.form.angle.number, "25")
+    for number, text in zip(panel.form.position.numbers, ("10", "20", "90"), strict=True):
+        type_in(qtbot, number, text)
+    settled(qtbot, window)
+    cone = window.controller.session.lights[2]
+    assert isinstance(cone, Cone)
+    assert cone.angle == 25.0
+    assert cone.position == (10.0, 20.0, 90.0)
 
 
 def test_a_light_fixed_in_the_world_comes_from_where_it_came(qtbot, window, panel):
     before = window.controller.session.lights[0]
     seen = np.asarray(before.direction) / np.linalg.norm(before.direction)
     rgb = window.controller.outcome.composition.panels[0].content.rgb
-    panel.form.frame.setCurrentIndex(panel.form.frame.findData("world"))
-    panel.form.frame.activated.emit(panel.form.frame.currentIndex())
+    choose(qtbot, panel.form.frame, panel.form.frame.itemText(panel.form.frame.findData("world")))
     settled(qtbot, window)
     light = window.controller.session.lights[0]
     assert light.frame == "world"
@@ -133,7 +171,7 @@ def test_a_light_fixed_in_the_world_comes_from_where_it_came(qtbot, window, pane
     assert np.abs(new.astype(int) - rgb).max() <= 1
 
 
-def test_no_direction_is_refused_with_a_word(window, panel):
+def test_no_direction_is_refused_with_a_word(qtbot, window, panel):
     before = window.controller.session.lights[0]
     said = []
     window.controller.failed.connect(said.append)

@@ -11,12 +11,16 @@ from qtpy.QtWidgets import (
     QHeaderView,
     QKeySequenceEdit,
     QLineEdit,
+    QMessageBox,
     QPlainTextEdit,
     QScrollBar,
     QTabBar,
     QTextEdit,
     QWidget,
 )
+
+from app.gui.picture_dialog import PictureDialog
+from tests.app.gui.hands import answered, click_menu
 
 _CONTROLS = (
     QAbstractButton,
@@ -84,6 +88,21 @@ def test_every_control_of_the_dialogs_has_a_name(window, qtbot) -> None:
         (dialog,) = set(window.findChildren(QDialog)) - before
         assert not _nameless(dialog), name
         dialog.close()
+
+
+def test_every_control_of_the_questions_has_a_name(window, qtbot) -> None:
+    nameless = []
+
+    def look(dialog) -> None:
+        nameless.extend(_nameless(dialog))
+        qtbot.keyClick(dialog, Qt.Key.Key_Escape)
+
+    with answered(PictureDialog, look):
+        qtbot.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    click_menu(qtbot, window, "Curvature", "Flip colours")
+    with answered(QMessageBox, look):
+        qtbot.keyClick(window, Qt.Key.Key_Q, Qt.KeyboardModifier.ControlModifier)
+    assert not nameless
 
 
 def test_a_control_without_a_name_is_found(window) -> None:

@@ -8,11 +8,13 @@ from qtpy.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDropEvent
 from qtpy.QtWidgets import QApplication, QFileDialog, QLabel
 
+from app.gui.open_menus import RECENT
 from app.loading import load_mesh
 from app.samples import sample
-from app.session import Session
+from app.session import Session, write
 from sample_meshes.ply import write_ply
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import click_menu, click_tab, dismissed, named, tick
 from tests.app.test_texture import glb
 from tests.app.test_texture import obj as obj
 
@@ -33,39 +35,75 @@ def mesh_shown(window) -> int:
     return len(window.controller.outcome.subject.mesh.vertices)
 
 
-def test_the_dialog_opens_a_mesh(window, qtbot, meshes, monkeypatch) -> None:
-    asked = []
-
-    def answer(*words) -> tuple[str, str]:
-        asked.append(words[1])
-        return str(meshes / "a.ply"), ""
-
-    monkeypatch.setattr(QFileDialog, "getOpenFileName", answer)
+def test_the_dialog_opens_a_mesh(window, qtbot, meshes) -> None:
     before = pixels(window)
-    qtbot.keyClick(window, Qt.Key.Key_O, CONTROL)
+    with named(meshes / "a.ply"):
+        qtbot.keyClick(window, Qt.Key.Key_O, CONTROL)
     settled(qtbot, window)
-    assert asked == ["Open"]
     assert window.controller.session.mesh == str(meshes / "a.ply")
     assert mesh_shown(window) == len(load_mesh(meshes / "a.ply").mesh.vertices)
     assert (pixels(window) != before).any()
     # A dialog that is dismissed changes nothing.
-    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: ("", ""))
-    qtbot.keyClick(window, Qt.Key.Key_O, CONTROL)
+    with dismissed(QFileDialog):
+        click_menu(qtbot, window, "File", "Open")
+    settled(qtbot, window)
     assert window.controller.session.mesh == str(meshes / "a.ply")
 
 
-def test_a_mesh_is_dropped_on_the_window(window, qtbot, meshes) -> None:
+def test_a_recent_file_and_a_sample_are_opened_from_the_menu(window, qtbot) -> None:
+    click_menu(qtbot, window, "File", "Sample meshes", "saddle")
+    settled(qtbot, window)
+    assert window.controller.session.mesh == "sample:saddle"
+    assert mesh_shown(window) == len(load_mesh(sample("saddle").path).mesh.vertices)
+    click_menu(qtbot, window, "File", "Open recent", "sample:sphere")
+    settled(qtbot, window)
+    assert window.controller.session.mesh == "sample:sphere"
+    click_menu(qtbot, window, "File", "Open recent")
+    listed = [one.text() for one in window.menus[RECENT].actions()]
+    assert listed == ["sample:sphere", "sample:saddle"]
+    for menu in (RECENT, "File"):
+        qtbot.keyClick(window.menus[menu], Qt.Key.Key_Escape)
+
+
+def _drop(qtbot, window, file) -> None:
     data = QMimeData()
-    data.setUrls([QUrl.fromLocalFile(str(meshes / "b.ply"))])
+    data.setUrls([QUrl.fromLocalFile(str(file))])
     copy = Qt.DropAction.CopyAction
     enter = QDragEnterEvent(window.rect().center(), copy, data, LEFT, NONE)
     QApplication.sendEvent(window, enter)
     assert enter.isAccepted()
-    drop = QDropEvent(QPointF(300, 300), copy, data, LEFT, NONE)
-    QApplication.sendEvent(window, drop)
+    QApplication.sendEvent(window, QDropEvent(QPointF(300, 300), copy, data, LEFT, NONE))
     settled(qtbot, window)
+
+
+def test_a_mesh_is_dropped_on_the_window(window, qtbot, meshes) -> None:
+    _drop(qtbot, window, meshes / "b.ply")
     assert window.controller.session.mesh == str(meshes / "b.ply")
     assert mesh_shown(window) == len(load_mesh(meshes / "b.ply").mesh.vertices)
+
+
+def test_a_session_that_is_dropped_opens(window, qtbot, tmp_path) -> None:
+    file = tmp_path / "kept.json"
+    write(Session(mesh="sample:saddle", view="curvature"), file)
+    _drop(qtbot, window, file)
+    assert window.controller.session.mesh == "sample:saddle"
+    assert window.controller.document.path == file
+    assert window.controller.outcome.session.view == "curvature"
+
+
+def test_a_broken_file_gives_a_message_and_the_old_picture_stays(window, qtbot, tmp_path) -> None:
+    before, session = pixels(window), window.controller.session
+    bad = tmp_path / "bad.ply"
+    bad.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
+    _drop(qtbot, window, bad)
+    assert window.banner.isVisible()
+    assert "bad.ply" in window.banner.label.text()
+    assert window.controller.session == session
+    qtbot.mouseClick(window.banner.close_, LEFT)
+    assert not window.banner.isVisible()
+    qtbot.wait(50)
+    settled(qtbot, window)
+    np.testing.assert_array_equal(pixels(window), before)
 
 
 def test_arrows_go_through_the_folder_and_round(open_window, qtbot, meshes) -> None:
@@ -115,16 +153,17 @@ def test_long_work_shows_its_time_leaves_the_window_free_and_is_cancelled_by_a_c
     assert len(beats) > 20
 
 
-def test_the_old_picture_stays_until_the_new_one_is_there(window, qtbot, meshes) -> None:
-    shown = [pixels(window)]
+def test_the_old_picture_stays_until_the_new_one_is_there(open_window, qtbot, meshes) -> None:
+    window = open_window(Session(mesh=str(meshes / "a.ply")))
+    shown = pixels(window)
     fresh = []
     window.controller.shown.connect(lambda _: fresh.append(1))
-    window.controller.open(meshes / "b.ply")
+    qtbot.keyClick(window.canvas, Qt.Key.Key_Right)
     while not fresh:
-        np.testing.assert_array_equal(pixels(window), shown[0])
+        np.testing.assert_array_equal(pixels(window), shown)
         qtbot.wait(5)
     settled(qtbot, window)
-    assert (pixels(window) != shown[0]).any()
+    assert (pixels(window) != shown).any()
 
 
 def _colors(image: np.ndarray) -> set[str]:
@@ -146,10 +185,9 @@ def test_a_texture_is_seen_and_can_be_left_out(open_window, qtbot, tmp_path, obj
     window = open_window(session)
     assert _colors(pixels(window)) == {"red", "green", "blue"}
     panel = window.docks["shading"].fill()
-    window.docks["shading"].raise_()
-    settled(qtbot, window)
+    click_tab(qtbot, window, "Shading")
     assert panel.albedo.isEnabled()
-    panel.albedo.click()
+    tick(qtbot, panel.albedo)
     settled(qtbot, window)
     assert not window.controller.session.albedo
     assert _colors(pixels(window)) == set()

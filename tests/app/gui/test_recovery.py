@@ -16,6 +16,7 @@ from app.samples import sample
 from app.session import Session, read
 from sample_meshes.ply import write_ply
 from tests.app.gui.conftest import settled
+from tests.app.gui.hands import click_menu, named, undo
 
 # Longer than any of the tests' waits.
 _NEVER = 1e9
@@ -128,27 +129,28 @@ def test_what_was_only_opened_is_not_offered(open_window, qtbot, folder_of_meshe
     assert not _kept(window, qtbot)
     assert not window.isWindowModified()
     # A change is worth it, and no more so once it is taken back.
-    window.act(window.actions_["view.curvature"])
+    qtbot.keyClick(window, Qt.Key.Key_F3)
     settled(qtbot, window)
     assert _kept(window, qtbot)
-    window.act(window.actions_["edit.undo"])
+    undo(qtbot, window)
     settled(qtbot, window)
     assert not _kept(window, qtbot)
 
 
 def test_a_unit_that_is_remembered_is_no_loss(open_window, qtbot, folder_of_meshes) -> None:
     window = open_window(Session(mesh=str(folder_of_meshes / "a.ply")))
-    window.controller.open(folder_of_meshes / "c.ply")
-    settled(qtbot, window)
+    for _ in range(2):
+        qtbot.keyClick(window.canvas, Qt.Key.Key_Right)
+        settled(qtbot, window)
+    assert window.controller.session.mesh.endswith("c.ply")
     qtbot.waitUntil(window.unit_bar.isVisible)
-    window.units.answer(1000.0)
+    qtbot.mouseClick(window.unit_bar.buttons["m"], Qt.MouseButton.LeftButton)
     settled(qtbot, window)
     assert window.controller.session.mm_per_unit == 1000.0
     assert not _kept(window, qtbot)
-    window.controller.open(folder_of_meshes / "a.ply")
-    settled(qtbot, window)
-    window.controller.open(folder_of_meshes / "c.ply")
-    settled(qtbot, window)
+    for key in (Qt.Key.Key_Right, Qt.Key.Key_Left):  # round to the first, and back
+        qtbot.keyClick(window.canvas, key)
+        settled(qtbot, window)
     assert window.controller.session.mm_per_unit == 1000.0
     assert not _kept(window, qtbot)
 
@@ -158,9 +160,10 @@ def test_a_mesh_opened_over_a_session_file_is_not_saved_into_it(
 ) -> None:
     window = open_window(Session(mesh=str(folder_of_meshes / "a.ply")))
     path = folder_of_meshes / "mine.json"
-    window.controller.change("flip", flip=True)
-    assert window.controller.save(path)
-    window.controller.open(folder_of_meshes / "b.ply")
+    click_menu(qtbot, window, "Curvature", "Flip colours")
+    with named(path):
+        qtbot.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    qtbot.keyClick(window.canvas, Qt.Key.Key_Right)
     settled(qtbot, window)
     assert window.controller.document.path is None
     assert "b.ply" in window.windowTitle()

@@ -7,22 +7,34 @@ from pathlib import Path
 import numpy as np
 import pytest
 from msgspec.structs import replace
-from qtpy.QtCore import QEvent, QPoint, Qt, QTimer
-from qtpy.QtGui import QCloseEvent, QColor, QGuiApplication, QImage
-from qtpy.QtWidgets import QApplication, QColorDialog, QDialog, QFileDialog
+from qtpy.QtCore import QEvent, Qt
+from qtpy.QtGui import QCloseEvent, QGuiApplication, QImage
+from qtpy.QtWidgets import QColorDialog, QDialogButtonBox, QFileDialog, QMessageBox
 
 from app import session as state
 from app.cli.main import main
 from app.gui.outputs import save_screenshot
 from app.gui.picture_dialog import PictureDialog
 from app.gui.saving import save_data
-from app.gui.unsaved import Answer, may_leave
 from app.picture import render
 from app.pipeline import Pipeline
 from app.provenance import read_pixels
 from app.session import Camera, Method, Session
 from app.transparency import checks
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import (
+    LEFT,
+    answered,
+    click_menu,
+    colored,
+    dismissed,
+    named,
+    pressed,
+    tick,
+    undo,
+)
+
+Button = QMessageBox.StandardButton
 
 
 @pytest.fixture
@@ -30,50 +42,43 @@ def small(open_window):
     return open_window(Session(mesh="sample:sphere", size=(200, 160)), size=(600, 420))
 
 
-@pytest.fixture
-def named(monkeypatch, tmp_path):
-    """Answer the next question for a file."""
-
-    def answer(name: str) -> Path:
-        path = tmp_path / name if name else Path()
-        chosen = (str(path) if name else "", "")
-        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: chosen)
-        return path
-
-    return answer
+CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
 
 
-def _act(window, name: str) -> None:
-    window.act(window.actions_[name])
+def _flip(qtbot, window) -> None:
+    click_menu(qtbot, window, "Curvature", "Flip colours")
+    settled(qtbot, window)
 
 
-def test_a_session_is_saved_under_its_name_and_opens_again(small, qtbot, named) -> None:
+def test_a_session_is_saved_under_its_name_and_opens_again(small, qtbot, tmp_path) -> None:
     controller = small.controller
-    controller.change("view", view="curvature")
-    path = named("mine")
-    qtbot.keyClick(small, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-    path = path.with_suffix(".json")
+    qtbot.keyClick(small, Qt.Key.Key_F3)
+    path = tmp_path / "mine.json"
+    with named(tmp_path / "mine"):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
     assert state.read(path) == controller.session
     assert not controller.document.dirty
     assert small.windowTitle().startswith("mine.json")
-    controller.change("flip", flip=True)
+    _flip(qtbot, small)
     assert controller.document.dirty
-    named("")  # it is not asked again
-    qtbot.keyClick(small, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)  # it is not asked again
     assert state.read(path).flip
-    other = named("other.json")
-    keys = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
-    qtbot.keyClick(small, Qt.Key.Key_S, keys)
+    other = tmp_path / "other.json"
+    with named(other):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL | SHIFT)
     assert state.read(other) == state.read(path)
-    controller.change("flip", flip=False)
-    controller.open(path)
+    _flip(qtbot, small)
+    # A session takes the place of what was done, so that is asked about first.
+    with pressed(Button.Discard), named(path):
+        qtbot.keyClick(small, Qt.Key.Key_O, CONTROL)
     settled(qtbot, small)
     assert controller.session.flip
     assert not controller.document.dirty
 
 
-def test_a_session_that_cannot_be_written_is_told_and_stays_unsaved(small, tmp_path) -> None:
-    small.controller.change("flip", flip=True)
+def test_a_session_that_cannot_be_written_is_told_and_stays_unsaved(small, qtbot, tmp_path) -> None:
+    _flip(qtbot, small)
+    # No dialog leads there; but a folder may be gone by the time it is written.
     assert not small.controller.save(tmp_path / "missing" / "mine.json")
     assert "missing" in small.banner.label.text()
     assert small.controller.document.dirty
@@ -81,26 +86,31 @@ def test_a_session_that_cannot_be_written_is_told_and_stays_unsaved(small, tmp_p
 
 @pytest.mark.parametrize(
     ("answer", "goes", "saved"),
-    [(Answer.SAVE, True, True), (Answer.DISCARD, True, False), (Answer.CANCEL, False, False)],
+    [("Save", True, True), ("Discard", True, False), ("Cancel", False, False)],
 )
-def test_unsaved_changes_are_asked_about(small, tmp_path, answer, goes, saved) -> None:
-    path, asked = tmp_path / "mine.json", []
-    small.ask_unsaved = lambda window: asked.append(window) or answer
-    assert may_leave(small)
-    assert small.controller.save(path)
-    assert may_leave(small)
-    assert not asked  # nothing to lose
-    small.controller.change("flip", flip=True)
-    assert may_leave(small) is goes
-    assert asked == [small]
+def test_unsaved_changes_are_asked_about(small, qtbot, tmp_path, answer, goes, saved) -> None:
+    path = tmp_path / "mine.json"
+    with named(path):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
+    _flip(qtbot, small)
+    with pressed(Button[answer]):
+        qtbot.keyClick(small, Qt.Key.Key_Q, CONTROL)
+    assert small.isVisible() is not goes
     assert state.read(path).flip is saved
 
 
-def test_saving_that_was_given_up_keeps_the_window(small, named) -> None:
-    named("")
-    small.ask_unsaved = lambda _: Answer.SAVE
-    small.controller.change("flip", flip=True)
-    assert not may_leave(small)
+def test_nothing_is_asked_where_nothing_is_lost(small, qtbot, tmp_path) -> None:
+    with named(tmp_path / "mine.json"):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
+    qtbot.keyClick(small, Qt.Key.Key_Q, CONTROL)
+    assert not small.isVisible()
+
+
+def test_saving_that_was_given_up_keeps_the_window(small, qtbot) -> None:
+    _flip(qtbot, small)
+    with pressed(Button.Save), dismissed(QFileDialog):
+        qtbot.keyClick(small, Qt.Key.Key_Q, CONTROL)
+    assert small.isVisible()
 
 
 class _ByPerson(QCloseEvent):
@@ -110,48 +120,46 @@ class _ByPerson(QCloseEvent):
         return True
 
 
-def test_a_person_who_cancels_keeps_the_window(small) -> None:
-    small.ask_unsaved = lambda _: Answer.CANCEL
-    small.controller.change("flip", flip=True)
+def test_a_person_who_cancels_keeps_the_window(small, qtbot) -> None:
+    _flip(qtbot, small)
     event = _ByPerson()
-    small.closeEvent(event)
+    with pressed(Button.Cancel):
+        small.closeEvent(event)
     assert event.type() == QEvent.Type.Close
     assert not event.isAccepted()
-    _act(small, "file.quit")
     assert small.isVisible()
-    small.ask_unsaved = lambda _: Answer.DISCARD
-    _act(small, "file.quit")
-    assert not small.isVisible()
 
 
 def test_a_mesh_that_was_only_looked_at_needs_no_saving(small, qtbot) -> None:
-    small.controller.open("sample:saddle")
+    click_menu(qtbot, small, "File", "Sample meshes", "saddle")
     settled(qtbot, small)
     assert small.controller.session.mesh == "sample:saddle"
     assert not small.controller.document.dirty
-    small.controller.change("flip", flip=True)
-    small.controller.open("sample:torus")
+    _flip(qtbot, small)
+    click_menu(qtbot, small, "File", "Sample meshes", "torus")
     settled(qtbot, small)
     assert small.controller.document.dirty
 
 
-def test_the_menu_asks_for_a_size_and_writes_the_picture(
-    small, qtbot, named, tmp_path, monkeypatch
-) -> None:
-    def accept(dialog) -> int:
-        dialog.width_box.setValue(150)
-        dialog.height_box.setValue(120)
-        return QDialog.DialogCode.Accepted
+def test_a_size_is_typed_and_the_picture_written(small, qtbot, tmp_path) -> None:
+    picture, session = tmp_path / "mine.png", tmp_path / "mine.json"
 
-    monkeypatch.setattr(PictureDialog, "exec", accept)
-    picture, session = named("mine"), tmp_path / "mine.json"
-    _act(small, "file.save_picture")
+    def sized(dialog) -> None:
+        for box, number in ((dialog.width_box, "150"), (dialog.height_box, "120")):
+            box.setFocus()
+            box.selectAll()
+            qtbot.keyClicks(box, number)
+        qtbot.mouseClick(dialog.buttons.button(QDialogButtonBox.StandardButton.Ok), LEFT)
+
+    with answered(PictureDialog, sized), named(tmp_path / "mine"):
+        click_menu(qtbot, small, "File", "Save picture")
     settled(qtbot, small)
     assert small.controller.session.size == (150, 120)
-    assert small.controller.save(session)
+    with named(session):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
     other = tmp_path / "other.png"
     assert main(["shade", "--session", str(session), "-o", str(other), "--quiet"]) == 0
-    assert picture.with_suffix(".png").read_bytes() == other.read_bytes()
+    assert picture.read_bytes() == other.read_bytes()
 
 
 def test_the_size_of_the_view_is_one_click_away(small, qtbot) -> None:
@@ -163,7 +171,7 @@ def test_the_size_of_the_view_is_one_click_away(small, qtbot) -> None:
 
 
 def test_the_copied_picture_is_the_session_in_the_size_of_the_view(small, qtbot) -> None:
-    _act(small, "file.copy_picture")
+    qtbot.keyClick(small, Qt.Key.Key_C, CONTROL | SHIFT)
     settled(qtbot, small)
     image = QGuiApplication.clipboard().image().convertToFormat(QImage.Format.Format_RGB888)
     size = tuple(small.canvas.window_.GetSize())
@@ -175,39 +183,34 @@ def test_the_copied_picture_is_the_session_in_the_size_of_the_view(small, qtbot)
 
 
 def test_a_transparent_picture_is_asked_for_by_hand_and_is_the_command_lines(
-    small, qtbot, named, tmp_path
+    small, qtbot, tmp_path
 ) -> None:
-    picture, session, other = named("mine"), tmp_path / "mine.json", tmp_path / "other.png"
+    picture, session, other = (tmp_path / one for one in ("mine.png", "mine.json", "other.png"))
 
-    def answer() -> None:
-        dialog = QApplication.activeModalWidget()
-        assert isinstance(dialog, PictureDialog)
-        box = dialog.clear
-        qtbot.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(8, box.height() // 2))
+    def clear(dialog) -> None:
+        tick(qtbot, dialog.clear)
         qtbot.keyClick(dialog, Qt.Key.Key_Return)
 
-    QTimer.singleShot(200, answer)
-    qtbot.keyClick(small, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    with answered(PictureDialog, clear), named(picture):
+        qtbot.keyClick(small, Qt.Key.Key_E, CONTROL)
     settled(qtbot, small)
-    picture = picture.with_suffix(".png")
     assert read_pixels(picture).shape[2] == 4
-    assert small.controller.save(session)
+    with named(session):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
     assert main(["draw", "--session", str(session), "-o", str(other), "--quiet"]) == 0
     assert picture.read_bytes() == other.read_bytes()
     # The view shows checks where nothing is, and undo brings the colour back.
     before = pixels(small)
     np.testing.assert_array_equal(np.unique(before[:20, :20]), np.unique(checks(1, 30)))
-    small.activateWindow()  # no window manager gives it the keyboard back
-    qtbot.waitUntil(small.isActiveWindow)
-    qtbot.keyClick(small, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    undo(qtbot, small)
     settled(qtbot, small)
     assert pixels(small)[2, 2].tolist() == [0x20, 0x24, 0x2A]
 
 
 def test_the_copied_picture_keeps_its_transparency(small, qtbot) -> None:
-    _act(small, "view.transparent")
+    click_menu(qtbot, small, "View", "Transparent background")
     settled(qtbot, small)
-    _act(small, "file.copy_picture")
+    qtbot.keyClick(small, Qt.Key.Key_C, CONTROL | SHIFT)
     settled(qtbot, small)
     image = QGuiApplication.clipboard().image().convertToFormat(QImage.Format.Format_RGBA8888)
     size = tuple(small.canvas.window_.GetSize())
@@ -215,30 +218,28 @@ def test_the_copied_picture_keeps_its_transparency(small, qtbot) -> None:
     session = replace(small.controller.session, size=size)
     assert session.background == "transparent"
     np.testing.assert_array_equal(copied, render(session, Pipeline()).image)
-    _act(small, "view.transparent")
+    click_menu(qtbot, small, "View", "Transparent background")
     assert small.controller.session.background == Session().background
 
 
-def test_a_background_colour_is_chosen_and_comes_back_after_transparency(
-    small, qtbot, monkeypatch
-) -> None:
-    chosen = QColor("#446688")
-    monkeypatch.setattr(QColorDialog, "getColor", lambda *_: chosen)
-    _act(small, "view.background")
+def test_a_background_colour_is_chosen_and_comes_back_after_transparency(small, qtbot) -> None:
+    with colored("#446688"):
+        click_menu(qtbot, small, "View", "Background colour")
     settled(qtbot, small)
     assert pixels(small)[2, 2].tolist() == [0x44, 0x66, 0x88]
     for _ in range(2):
-        _act(small, "view.transparent")
+        click_menu(qtbot, small, "View", "Transparent background")
     assert small.controller.session.background == "#446688"
-    chosen = QColor()  # the dialog was dismissed
-    _act(small, "view.background")
+    with dismissed(QColorDialog):
+        click_menu(qtbot, small, "View", "Background colour")
     assert small.controller.session.background == "#446688"
 
 
 def test_the_next_frame_after_a_picture_is_whole(small, qtbot, tmp_path) -> None:
     before = pixels(small)
-    small.controller.change("background", background="#446688")
-    _act(small, "file.copy_picture")
+    with colored("#446688"):
+        click_menu(qtbot, small, "View", "Background colour")
+    qtbot.keyClick(small, Qt.Key.Key_C, CONTROL | SHIFT)
     settled(qtbot, small)
     after = pixels(small)
     assert after[2, 2].tolist() == [0x44, 0x66, 0x88]
@@ -246,11 +247,12 @@ def test_the_next_frame_after_a_picture_is_whole(small, qtbot, tmp_path) -> None
     np.testing.assert_array_equal(after[mesh][:1000], before[mesh][:1000])
 
 
-def test_a_screenshot_is_what_the_view_shows(small, named) -> None:
-    path = named("view.png")
-    _act(small, "file.screenshot")
+def test_a_screenshot_is_what_the_view_shows(small, qtbot, tmp_path) -> None:
+    path = tmp_path / "view.png"
+    with named(path):
+        qtbot.keyClick(small, Qt.Key.Key_F12)
     np.testing.assert_array_equal(read_pixels(path), pixels(small))
-    save_screenshot(small, path.parent / "missing" / "view.png")
+    save_screenshot(small, tmp_path / "missing" / "view.png")
     assert "missing" in small.banner.label.text()
 
 
@@ -267,26 +269,31 @@ def test_a_screenshot_is_what_the_view_shows(small, named) -> None:
 def test_saved_data_are_those_of_the_command(small, qtbot, tmp_path, kind, command, suffix) -> None:
     mine, theirs = tmp_path / f"mine{suffix}", tmp_path / f"theirs{suffix}"
     # Whatever is shown: curvature is smoothed otherwise for shading than for measuring.
-    small.controller.change("view", view="shade" if kind == "curvature" else "curvature")
-    save_data(small.controller, mine, kind)
+    qtbot.keyClick(small, Qt.Key.Key_F2 if kind == "curvature" else Qt.Key.Key_F3)
+    with named(mine):
+        click_menu(qtbot, small, "File", f"Save {kind} data")
     settled(qtbot, small)
     session = tmp_path / "mine.json"
-    assert small.controller.save(session)
+    with named(session):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
     assert main([command, "--session", str(session), "-o", str(theirs), "--quiet"]) == 0
     assert mine.read_bytes() == theirs.read_bytes()
 
 
 def test_data_of_another_format_and_over_the_mesh_are_refused(small, qtbot, tmp_path) -> None:
-    save_data(small.controller, tmp_path / "mine.xyz", "curvature")
+    with named(tmp_path / "mine.xyz"):
+        click_menu(qtbot, small, "File", "Save curvature data")
     settled(qtbot, small)
     assert ".csv" in small.banner.label.text()
     mesh = tmp_path / "mesh.ply"
-    save_data(small.controller, mesh, "curvature")
+    with named(mesh):
+        click_menu(qtbot, small, "File", "Save curvature data")
     settled(qtbot, small)
     before = mesh.read_bytes()
-    small.controller.open(mesh)
+    with named(mesh):
+        qtbot.keyClick(small, Qt.Key.Key_O, CONTROL)
     settled(qtbot, small)
-    save_data(small.controller, mesh, "curvature")
+    save_data(small.controller, mesh, "curvature")  # after the dialog's own question
     settled(qtbot, small)
     assert "the mesh itself" in small.banner.label.text()
     assert mesh.read_bytes() == before
@@ -294,36 +301,37 @@ def test_data_of_another_format_and_over_the_mesh_are_refused(small, qtbot, tmp_
 
 def test_what_is_copied_draws_the_picture(small, qtbot, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    small.controller.change("view", view="figure", flip=True)
-    settled(qtbot, small)
-    _act(small, "file.copy_command")
+    qtbot.keyClick(small, Qt.Key.Key_F4)
+    _flip(qtbot, small)
+    click_menu(qtbot, small, "File", "Copy as command line")
     words = shlex.split(QGuiApplication.clipboard().text())
     assert words[:3] == ["curvelight", "figure", "sample:sphere"]
     assert main([*words[1:], "--quiet"]) == 0
     by_command = Path("sphere.png").read_bytes()
-    _act(small, "file.copy_script")
+    click_menu(qtbot, small, "File", "Copy as Python script")
     Path("drawing.py").write_text(QGuiApplication.clipboard().text())
     Path("sphere.png").unlink()
     runpy.run_path("drawing.py")
     assert Path("sphere.png").read_bytes() == by_command
 
 
-def test_what_flags_cannot_say_is_copied_with_its_file(small, tmp_path) -> None:
+def test_what_flags_cannot_say_is_copied_with_its_file(small, qtbot, tmp_path) -> None:
     noted = []
     small.controller.noted.connect(noted.append)
     QGuiApplication.clipboard().setText("before")
     camera = Camera((0.0, 0.0, 90.0), (0.0, 0.0, 0.0), height=40.0)
     small.controller.look(camera)
-    _act(small, "file.copy_command")
+    click_menu(qtbot, small, "File", "Copy as command line")
     assert QGuiApplication.clipboard().text() == "before"
     assert "save it" in noted[-1]
     path = tmp_path / "with space.json"
-    assert small.controller.save(path)
-    _act(small, "file.copy_command")
+    with named(path):
+        qtbot.keyClick(small, Qt.Key.Key_S, CONTROL)
+    click_menu(qtbot, small, "File", "Copy as command line")
     words = shlex.split(QGuiApplication.clipboard().text())
     assert words[1:4] == ["shade", "--session", str(path)]
     # A camera that moved is no unsaved change, but another picture.
-    small.controller.look("front")
+    qtbot.keyClick(small, Qt.Key.Key_1)
     small.controller.change("model", model=Method("lambert"), compared=(Method("wrap"),))
-    _act(small, "file.copy_command")
+    click_menu(qtbot, small, "File", "Copy as command line")
     assert "save it" in noted[-1]

@@ -7,8 +7,9 @@ from qtpy.QtTest import QTest
 
 from app.gui.coarse import coarse
 from app.gui.status import Status
-from app.session import Camera, Method, Session
+from app.session import Camera, Session
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import choose, click_menu
 from tests.app.gui.mouse import move
 
 LEFT = Qt.MouseButton.LeftButton
@@ -21,7 +22,7 @@ def _says(window) -> str:
 
 
 def _by_pixel(qtbot, window) -> None:
-    window.qactions["view.shade_pixel"].trigger()
+    click_menu(qtbot, window, "View", "Compute shading", "At pixels")
     qtbot.waitUntil(lambda: window.canvas.by_pixel is not None)
     settled(qtbot, window)
 
@@ -50,7 +51,7 @@ def test_the_menu_chooses_and_the_status_bar_says(window, qtbot) -> None:
     assert _says(window) == "per pixel"
     assert window.qactions["view.shade_pixel"].isChecked()
     assert _alike(window, vertex) and (pixels(window) != vertex).any()
-    window.qactions["view.shade_vertex"].trigger()
+    click_menu(qtbot, window, "View", "Compute shading", "At vertices")
     assert _says(window) == "per vertex"
     np.testing.assert_array_equal(pixels(window), vertex)
     assert window.settings.get("shading path", "") == "vertex"
@@ -78,20 +79,21 @@ def test_a_drag_computes_nothing_until_it_rests(window, qtbot, what) -> None:
         assert shown[-1].session.camera == session.camera
     # The same lights and camera, once more at vertices.
     pixel = pixels(window)
-    window.qactions["view.shade_vertex"].trigger()
+    click_menu(qtbot, window, "View", "Compute shading", "At vertices")
     assert _alike(window, pixel.astype(int))
 
 
 def test_what_has_no_shader_is_shaded_at_vertices_with_the_reason(window, qtbot) -> None:
     _by_pixel(qtbot, window)
-    window.controller.change("model", model=Method("wrap"))
+    names = window.docks["shading"].fill().model.names
+    choose(qtbot, names, "wrap")
     settled(qtbot, window)
     assert _says(window) == "per vertex"
     assert "wrap" in window.findChild(Status).toolTip()
-    window.controller.change("model", model=Method("lambert"))
+    choose(qtbot, names, "lambert")
     settled(qtbot, window)
     assert _says(window) == "per pixel"
-    window.controller.change("view", view="figure")
+    qtbot.keyClick(window, Qt.Key.Key_F4)
     settled(qtbot, window)
     assert _says(window) == "per pixel"
 
@@ -101,11 +103,16 @@ def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way)
     """Frames are measured; what computing takes is given, so that one or the other wins."""
     monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: seconds)
     window = open_window(Session(mesh="sample:sphere"), path="automatic")
-    qtbot.waitUntil(lambda: window.pixel_path.racing, timeout=20_000)
-    qtbot.waitUntil(lambda: not window.pixel_path.racing, timeout=60_000)
+    path = window.pixel_path
+
+    def raced() -> bool:  # it may have begun, and ended, before anybody looks
+        found = path.reason != "" if way == "per vertex" else window.canvas.by_pixel is not None
+        return found and not path.racing
+
+    qtbot.waitUntil(raced)
     settled(qtbot, window)
     assert _says(window) == way
-    assert (window.pixel_path.reason != "") == (way == "per vertex")
+    assert (path.reason != "") == (way == "per vertex")
 
 
 def test_computing_is_measured(window) -> None:
@@ -161,7 +168,7 @@ def test_a_mesh_that_is_slow_to_draw_is_not_drawn_for_the_race(
     monkeypatch.setattr(canvas, "draw_unseen", drawn)
     monkeypatch.setattr(type(canvas), "seconds", property(lambda _: 0.7))
     monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: -1e3)
-    window.qactions["view.shade_automatic"].trigger()
+    click_menu(qtbot, window, "View", "Compute shading", "The faster way")
     qtbot.waitUntil(lambda: "each step" in window.pixel_path.reason, timeout=60_000)
     np.testing.assert_array_equal(pixels(window), before)
     if standing_in:

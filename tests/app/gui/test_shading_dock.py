@@ -7,38 +7,28 @@ import pytest
 from qtpy.QtCore import Qt
 from qtpy.QtTest import QTest
 
+from app.colormaps import PAPER, table
+from app.loading import load_mesh
 from app.picture import compose
 from app.pipeline import Pipeline
+from app.samples import sample
 from app.session import Method, Session, Substance
 from lutcore.materials import material
-from tests.app.gui.conftest import settled
+from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import bring_to_view, choose, click_tab, tick, type_in, undo
 
 
 @pytest.fixture
 def panel(qtbot, window):
-    window.docks["shading"].raise_()
+    click_tab(qtbot, window, "Shading")
     content = window.docks["shading"].fill()
     settled(qtbot, window)
     return content
 
 
-def pick(combo, text):
-    """Choose as a person does: `activated` is not emitted otherwise."""
-    combo.setFocus()
-    combo.setCurrentText(text)
-    combo.activated.emit(combo.currentIndex())
-
-
-def type_number(number, text):
-    number.setFocus()
-    number.selectAll()
-    QTest.keyClicks(number, text)
-    QTest.keyClick(number, Qt.Key.Key_Return)
-
-
 def test_a_preset_changes_material_sliders_figures_and_picture(qtbot, window, panel):
     before = window.controller.outcome.composition.panels[0].content.rgb
-    pick(panel.material.preset, "marble")
+    choose(qtbot, panel.material.preset, "marble")
     settled(qtbot, window)
     assert window.controller.session.material == "marble"
     assert panel.material.scattering[2].value == 3.0 and panel.material.eta[1].value == 1.5
@@ -57,15 +47,15 @@ def test_a_slider_makes_a_changed_material_and_undo_takes_it_back(qtbot, window,
     assert isinstance(made, Substance) and made.name == "skin1, changed"
     assert made.absorption[0] > 0.032 and made.absorption[1:] == (0.17, 0.48)
     assert panel.material.preset.currentText() == "skin1, changed"
-    window.act(window.actions_["edit.undo"])
+    undo(qtbot, window)
     assert window.controller.session.material == "skin1"
     assert panel.material.absorption[0].value == 0.032
 
 
 def test_sliders_back_at_the_named_values_are_the_named_material(qtbot, window, panel):
-    type_number(panel.material.scattering[0].number, "0.5")
+    type_in(qtbot, panel.material.scattering[0].number, "0.5")
     assert window.controller.session.material.scattering[0] == 0.5
-    type_number(panel.material.scattering[0].number, "0.74")
+    type_in(qtbot, panel.material.scattering[0].number, "0.74")
     assert window.controller.session.material == "skin1"
 
 
@@ -73,21 +63,21 @@ def test_the_three_indices_move_together_until_they_are_parted(qtbot, window, pa
     monkeypatch.setattr("app.gui.document._ONE_STEP", 0.0)  # what follows at once is a step too
     form = panel.material
     assert form.linked.isChecked()
-    type_number(form.eta[1].number, "1.5")
+    type_in(qtbot, form.eta[1].number, "1.5")
     assert [slider.value for slider in form.eta] == [1.5, 1.5, 1.5]
     assert window.controller.session.material.eta == 1.5
     before = window.controller.outcome.composition.panels[0].content.rgb
-    form.linked.click()
-    type_number(form.eta[2].number, "2")
+    tick(qtbot, form.linked)
+    type_in(qtbot, form.eta[2].number, "2")
     settled(qtbot, window)
     assert window.controller.session.material.eta == (1.5, 1.5, 2.0)
     after = window.controller.outcome.composition.panels[0].content.rgb
     changed = (after != before).any(axis=0)
     assert changed[2]
     # Joined again they are what red is, and that is one step to undo.
-    form.linked.click()
+    tick(qtbot, form.linked)
     assert window.controller.session.material.eta == 1.5
-    window.act(window.actions_["edit.undo"])
+    undo(qtbot, window)
     assert window.controller.session.material.eta == (1.5, 1.5, 2.0)
     assert not form.linked.isChecked() and form.eta[2].value == 2.0
 
@@ -111,28 +101,27 @@ def test_equal_ways_of_a_logarithmic_slider_are_equal_ratios(panel):
 
 def test_the_scale_is_the_files_own_until_it_is_typed(qtbot, window, panel):
     assert panel.own_unit.isChecked() and panel.unit.value == 1.0
-    type_number(panel.unit.number, "2.5")
+    type_in(qtbot, panel.unit.number, "2.5")
     settled(qtbot, window)
     assert window.controller.session.mm_per_unit == 2.5 and not panel.own_unit.isChecked()
     assert window.controller.outcome.mm_per_unit == 2.5
-    panel.own_unit.click()
+    tick(qtbot, panel.own_unit)
     assert window.controller.session.mm_per_unit is None
 
 
 def test_a_model_shows_its_own_parameters(qtbot, window, panel):
     assert set(panel.model.form.controls) == {"hinges", "area", "samples"}
-    panel.model.form.controls["hinges"].setValue(8)
+    type_in(qtbot, panel.model.form.controls["hinges"], "8")
     assert window.controller.session.model == Method("curvature-lut", {"hinges": 8.0})
-    pick(panel.model.names, "lambert")
+    choose(qtbot, panel.model.names, "lambert")
     assert window.controller.session.model == Method("lambert")
     assert "hinges" not in panel.model.form.controls
     settled(qtbot, window)
 
 
 def test_the_profile_and_shadows_are_chosen(qtbot, window, panel):
-    pick(panel.profile.names, "burley2015")
-    panel.shadows.setCurrentIndex(panel.shadows.findData("on"))
-    panel.shadows.activated.emit(panel.shadows.currentIndex())
+    choose(qtbot, panel.profile.names, "burley2015")
+    choose(qtbot, panel.shadows, panel.shadows.itemText(panel.shadows.findData("on")))
     settled(qtbot, window)
     session = window.controller.session
     assert session.profile.name == "burley2015" and session.shadows == "on"
@@ -141,11 +130,11 @@ def test_the_profile_and_shadows_are_chosen(qtbot, window, panel):
 def test_exposure_is_automatic_or_in_stops(qtbot, window, panel):
     automatic = window.controller.outcome.composition.exposure
     assert panel.exposure.value == pytest.approx(math.log2(automatic), abs=1e-6)
-    panel.auto_exposure.click()
+    tick(qtbot, panel.auto_exposure)
     # What is shown stays, to the nine decimals that the slider's number keeps of the stops.
     assert window.controller.session.exposure == pytest.approx(automatic, rel=1e-8)
     before = window.controller.outcome.composition.panels[0].content.rgb.astype(int)
-    type_number(panel.exposure.number, f"{math.log2(automatic) - 1.0:.4f}")
+    type_in(qtbot, panel.exposure.number, f"{math.log2(automatic) - 1.0:.4f}")
     settled(qtbot, window)
     after = window.controller.outcome.composition.panels[0].content.rgb
     assert (after <= before).all()
@@ -153,7 +142,7 @@ def test_exposure_is_automatic_or_in_stops(qtbot, window, panel):
     bright = (before > 100) & (before < 255)
     expected = 255.0 * ((before[bright] / 255.0 + 0.055) * 0.5 ** (1.0 / 2.4) - 0.055)
     np.testing.assert_allclose(after[bright], expected, atol=1.0)
-    panel.auto_exposure.click()
+    tick(qtbot, panel.auto_exposure)
     assert window.controller.session.exposure is None
 
 
@@ -167,10 +156,45 @@ def test_arrow_keys_move_a_slider_and_open_no_other_file(window, panel):
     assert red.value > before and not opened
 
 
-def test_flat_and_albedo_are_switches(window, panel):
-    panel.flat.click()
-    assert window.controller.session.flat
+def test_flat_colours_are_the_exact_ones_of_the_map(qtbot, window, panel):
     assert not panel.albedo.isEnabled()  # the sphere's file has no colours
+    qtbot.keyClick(window, Qt.Key.Key_F3)
+    settled(qtbot, window)
+    lit = pixels(window)
+    bring_to_view(qtbot, panel.flat)
+    tick(qtbot, panel.flat)
+    settled(qtbot, window)
+    assert window.controller.session.flat
+    flat = pixels(window)
+    colors = np.rint(255.0 * table(PAPER)).astype(int)
+
+    def of_the_map(image) -> float:
+        mesh = image[(image != image[2, 2]).any(axis=2)][::7].astype(int)
+        return np.mean(np.abs(mesh[:, None] - colors).max(axis=2).min(axis=1) <= 3)
+
+    # Beside them there are the bar's letters and edges.
+    assert of_the_map(flat) > 0.9 > of_the_map(lit)
+
+
+def test_the_files_own_colours_are_seen_and_left_out(open_window, qtbot, tmp_path):
+    mesh = load_mesh(sample("sphere").path).mesh
+    path = tmp_path / "red.off"
+    red = [f"{x} {y} {z} 255 40 40" for x, y, z in mesh.vertices]
+    faces = [f"3 {a} {b} {c}" for a, b, c in mesh.faces]
+    path.write_text("\n".join(["COFF", f"{len(red)} {len(faces)} 0", *red, *faces, ""]))
+    window = open_window(Session(mesh=str(path), material="marble"))
+    panel = window.docks["shading"].fill()
+    click_tab(qtbot, window, "Shading")
+    settled(qtbot, window)
+    with_colours = pixels(window).astype(int)
+    middle = tuple(one // 2 for one in with_colours.shape[:2])
+    assert with_colours[middle][0] > with_colours[middle][2] + 40
+    bring_to_view(qtbot, panel.albedo)
+    tick(qtbot, panel.albedo)
+    settled(qtbot, window)
+    assert not window.controller.session.albedo
+    without = pixels(window).astype(int)
+    assert without[middle][0] < without[middle][2] + 40
 
 
 def test_all_controls_have_names_and_tips(panel):
@@ -186,7 +210,7 @@ def test_all_controls_have_names_and_tips(panel):
 
 
 def test_the_view_shows_what_the_command_line_draws(qtbot, window, panel):
-    pick(panel.material.preset, "ketchup")
+    choose(qtbot, panel.material.preset, "ketchup")
     settled(qtbot, window)
     outcome = window.controller.outcome
     made = compose(outcome.session, Pipeline())

@@ -8,6 +8,7 @@ from app.scene import Surface
 from app.session import Method, Session
 from app.wiping import column, line
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import undo
 from tests.app.gui.mouse import move
 
 PAIRS = {
@@ -108,7 +109,7 @@ def test_a_drag_moves_the_divider_and_is_one_step(open_window, qtbot) -> None:
     assert window.controller.session.wipe == pytest.approx(0.25, abs=0.01)
     np.testing.assert_array_equal(pixels(window)[rows, left : left + width], first)
     assert canvas.camera == camera
-    document.undo()
+    undo(qtbot, window)
     settled(qtbot, window)
     assert window.controller.session.wipe == 0.5
     assert swipe.at == 0.5

@@ -8,6 +8,7 @@ from app.gui.vision import KINDS, matrix, simulated
 from app.session import Method, Session
 from lutcore.metrics import ciede2000
 from tests.app.gui.conftest import pixels, settled
+from tests.app.gui.hands import click_menu
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -39,12 +40,12 @@ def test_the_view_shows_the_preview_and_the_session_stays(open_window, qtbot) ->
         )
     )
     before, session = pixels(window), window.controller.session
-    window.act(window.actions_["curvature.seen_with_deuteranopia"])
+    click_menu(qtbot, window, "Curvature", "Seen with", "Deuteranopia")
     settled(qtbot, window)
     shown = pixels(window)
     assert np.abs(shown.astype(int) - before).max() > 50
     assert window.controller.session == session
     assert window.qactions["curvature.seen_with_deuteranopia"].isChecked()
-    window.act(window.actions_["curvature.seen_with_all_cones"])
+    click_menu(qtbot, window, "Curvature", "Seen with", "All cones")
     settled(qtbot, window)
     np.testing.assert_array_equal(pixels(window), before)

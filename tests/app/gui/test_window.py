@@ -5,6 +5,7 @@ import pytest
 from qtpy.QtCore import QPoint, Qt
 
 from app.camera import axes
+from app.gui.coarse import coarse
 from app.session import Camera, Session
 from tests.app.gui.conftest import pixels, settled
 from tests.app.gui.mouse import move
@@ -23,21 +24,6 @@ def test_the_first_picture_shows_the_mesh(window) -> None:
     shown = pixels(window)
     background = shown[2, 2]
     assert (shown != background).any(axis=2).mean() > 0.1
-
-
-def test_a_broken_file_gives_a_message_and_the_old_picture_stays(window, qtbot, tmp_path) -> None:
-    before, session = pixels(window), window.controller.session
-    bad = tmp_path / "bad.ply"
-    bad.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
-    window.controller.open(bad)
-    settled(qtbot, window)
-    assert window.banner.isVisible()
-    assert "bad.ply" in window.banner.label.text()
-    assert window.controller.session == session
-    window.banner.hide()
-    qtbot.wait(50)
-    settled(qtbot, window)
-    np.testing.assert_array_equal(pixels(window), before)
 
 
 def test_a_drag_turns_the_mesh_and_is_no_step_of_the_history(window, qtbot) -> None:
@@ -80,3 +66,25 @@ def test_keys_undo_and_views(window, qtbot) -> None:
 def test_the_window_remembers_what_was_opened(open_window) -> None:
     window = open_window(Session(mesh="sample:sphere"))
     assert window.settings.recent[0] == "sample:sphere"
+
+
+def test_a_slow_renderer_draws_coarsely_in_a_drag_and_refines_after_it(window, qtbot) -> None:
+    canvas = window.canvas
+    canvas.give_coarse(coarse(window.controller.outcome.subject.mesh, 500))
+    canvas._frame = 1.0  # as if the last one had taken so long
+    start = pixels(window)
+    qtbot.mousePress(canvas, Qt.MouseButton.LeftButton, pos=QPoint(300, 300))
+    move(qtbot, canvas, QPoint(340, 300))
+    qtbot.waitUntil(lambda: canvas.coarsely)
+    rough = pixels(window)
+    qtbot.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=QPoint(340, 300))
+    qtbot.waitUntil(lambda: not canvas.coarsely)
+    settled(qtbot, window)
+    fine = pixels(window)
+    assert (fine != start).any() and (fine != rough).any()
+
+
+def test_a_software_renderer_takes_no_samples(window) -> None:
+    pixels(window)
+    assert window.canvas.backend.software
+    assert window.canvas.window_.GetMultiSamples() == 0
