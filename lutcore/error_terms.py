@@ -14,13 +14,18 @@ because the Laplacian of the normal is -grad(k1 + k2) - (k1^2 + k2^2) N. The ter
 - second: X; anisotropy: its part with (k1 - k2)^2, for models that know one curvature;
 - higher: e^2 + e G(<r^2>^(1/2) b)/2, e = E2/(1 + E2), light that goes through the body; in e^2 it
   is that of a ball of the body's volume over its area, where that is more;
-- third: Y; concave: G of the concave part of S;
+- third: Y, less what the error bar makes of the gradient; concave: G of the concave part of S;
 - facet: the area of the mesh per vertex times k1^2 + k2^2, what lies between a facet and the body;
-- noise: G(b + error bar) - G(b); base: what references and tables resolve;
+- base: what references and tables resolve;
 - rough: faces that the normals given do not follow; tilt: the error bar times its scale, where
-  one scale serves all channels; bumps: where each has its own, (2 rough h (1 - h))^(1/2), h the
-  share of the light that crosses facets: what is finer it blurs, what is coarser the normals show;
-- residue: E2/(1 + E2) alone, for tables that are off in the dark.
+  one scale serves all channels; bumps: where each has its own, the angle of the faces to the
+  normal, to a power near 1 that was measured; it hardly depends on h, the share of the light that
+  crosses facets, until light blurs all (h -> 1) or none (h -> 0);
+- residue: E2/(1 + E2) alone, for tables that are off in the dark;
+- beside: G(b*), b* what curvature may be beside the vertex: from its size whatever its sign and
+  direction, its error bar, and its gradient over <r^2>^(1/2). What is flat or hollow here and
+  faces away may have a lit ridge within reach; third, tilt and bumps fade into the dark by b*, too;
+- least: no light's error is foreseen to be less.
 
 psi is not looked up: psi(0)/(1 + u/L)^8, of the same value at 0 and the same integral, costs no
 table and is near enough to a bound.
@@ -38,6 +43,17 @@ from lutcore.lights import light_at
 
 # Half width of the terminator, in N.w.
 _EDGE = 0.1
+DOUBT = 3.1
+"""By how much the error bar of curvature counts in b*."""
+
+# By how much its size and its gradient do.
+_SIZE, _CHANGE = 1.1, 1.5
+# The error bar over the facets' width, times this, is how much of the gradient may be noise.
+_NOISE_OF_SLOPE = 1.2
+# Powers of the angle of bumps, and of the light that does and does not cross facets.
+_STEEPER, _CROSSING = 1.2, 1.0 / 12.0
+# Share of that angle by which cosines beside the normal's count for what is off on flat surfaces.
+_WOBBLE = 0.5
 _CLOSED = 1e-6
 # Cosines of the light among which the worst is sought where no light is known: the error is
 # largest near the terminator, where F_t bends most, or straight above.
@@ -131,7 +147,7 @@ def _read(curve: FloatArray, cosine: float) -> float:
 
 @compiled()
 def _error(
-    at: tuple[float, float, float, float, float, float, float],
+    at: tuple[float, float, float, float, float, float, float, float],
     way: tuple[float, float, float, float],
     spread: tuple[float, float, float, float],
     radius: float,
@@ -145,13 +161,13 @@ def _error(
     """Return the bound for one light and channel.
 
     Numbers and bare arrays instead of named tuples, which would be copied with every call. `at` is
-    k1, k2, error, facet, rough, tilt and bumps, `way` N.w, w along both principal directions and
-    the slope along w, `spread` that of the channel.
+    k1, k2, error, facet, rough, tilt, bumps and the size of the slope, `way` N.w, w along both
+    principal directions and the slope along w, `spread` that of the channel.
     """
     a, u, v, steep = way
     length, psi_0, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
-    noise, facet, rough, tilt, bumps = at[2], at[3], at[4], at[5], at[6]
+    noise, facet, rough, tilt, bumps, slope = at[2], at[3], at[4], at[5], at[6], at[7]
     p, q = max(k1, 0.0), max(k2, 0.0)
     sine = np.sqrt(u * u + v * v)
     b = np.sqrt((p * u) ** 2 + (q * v) ** 2)
@@ -169,13 +185,17 @@ def _error(
     uneven /= 1.0 + uneven
     glow = _glow(a, b, psi_0, per_width, w, corners)
     lit = _read(entering, a) + glow
-    fall = 1.0 / (1.0 + max(-a, 0.0) * per_width / (b + 1e-300))
-    fall *= fall
-    fall *= fall
-    fall *= fall
+    fall = _fall(a, b, per_width)
+    reach = square * length * length
+    beside = _SIZE * _SIZE * (k1 * k1 + k2 * k2) + (DOUBT * length * noise) ** 2
+    beside = np.sqrt(beside + (_CHANGE * length * slope) ** 2 * reach)
+    fall_beside = _fall(a, max(beside, b), per_width)
     # Where light goes round the terminator, <F_t> is off by as much as at the cosine there.
     round_ = a if bend == 0 else min(max(a, 0.0) + followed * psi_0 * fall, 1.0)
-    error = _read(off, round_) * (1.0 if bend == 0 else fall)
+    # Facets that turn to and from the light see what the model is off by on either side.
+    apart = _WOBBLE * bumps * sine
+    flat = max(_read(off, round_), _read(off, round_ - apart), _read(off, round_ + apart))
+    error = flat * (1.0 if bend == 0 else fall)
     if bend != 3:
         error += parts[0] * abs(glow - _glow(a, followed, psi_0, per_width, w, corners))
     error += (parts[1] * e2 + parts[2] * uneven) * lit
@@ -183,24 +203,29 @@ def _error(
     through = 0.5 * square * (length / radius) ** 2
     through = max(e2, through / (1.0 + through))
     error += parts[3] * (through * through + 0.5 * e2 * min(wide, 1.0))
-    third = 0.25 * square * length * length * abs(steep)
-    error += parts[4] * third / (1.0 + third) * fall
+    third = 0.25 * reach * max(0.0, abs(steep) - _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300))
+    error += parts[4] * third / (1.0 + third) * fall_beside
     error += parts[5] * _glow(a, hollow, psi_0, per_width, w, corners)
     # Faces larger than light reaches do not blur it.
-    reach = square * length * length
     held = reach / (reach + facet)
     error += parts[6] * facet * (k1 * k1 + k2 * k2) / (length * length) * lit
-    if noise > 0.0:
-        error += parts[7] * (
-            _glow(a, b + length * noise * sine, psi_0, per_width, w, corners) - glow
-        )
     # Next to the terminator a mesh and a table resolve no less than elsewhere.
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
-    error += parts[8] * (lit + 1.5 * edge_ * edge_)
-    error += parts[9] * held * rough * lit
-    crossed = parts[10] * tilt + parts[11] * bumps * np.sqrt(held * (1.0 - held))
-    error += crossed * sine * fall + parts[12] * e2
-    return min(error, 1.0)
+    error += parts[7] * (lit + 1.5 * edge_ * edge_)
+    error += parts[8] * held * rough * lit
+    crossed = (4.0 * held * (1.0 - held)) ** _CROSSING * bumps**_STEEPER
+    error += (parts[9] * tilt + parts[10] * crossed) * sine * fall_beside
+    error += parts[11] * e2 + parts[12] * _glow(a, beside, psi_0, per_width, w, corners)
+    return min(max(error, parts[13]), 1.0)
+
+
+@compiled()
+def _fall(a: float, b: float, per_width: float) -> float:
+    """Return how the glow falls off in the dark, where the light is bent by b."""
+    fall = 1.0 / (1.0 + max(-a, 0.0) * per_width / (b + 1e-300))
+    fall *= fall
+    fall *= fall
+    return fall * fall
 
 
 @compiled(parallel=True)
@@ -233,7 +258,8 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     for i in prange(len(points)):
         if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
             continue
-        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], bumps[i])
+        steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
+        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], bumps[i], steepest)
         for light in range(len(lights)):
             x, y, z, strength = light_at(lights, light, points[i, 0], points[i, 1], points[i, 2])
             a = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
@@ -246,7 +272,6 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
                 error = _error(at, way, spread, radius, bend, *fresnel, parts)
                 out[i, c] += lights[light, 8 + c] * strength * error
         if len(lights) == 0:
-            steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
             for a in _WORST:
                 sine = np.sqrt(1.0 - a * a)
                 for way in ((a, sine, 0.0, steepest * sine), (a, 0.0, sine, steepest * sine)):
