@@ -51,7 +51,7 @@ _SIZE, _CHANGE = 1.1, 1.5
 # The error bar over the facets' width, times this, is how much of the gradient may be noise.
 _NOISE_OF_SLOPE = 1.2
 # Powers of the angle of bumps, and of the light that does and does not cross facets.
-_STEEPER, _CROSSING = 1.2, 1.0 / 12.0
+_STEEPER, _CROSSING = 1.2, 1.0 / 6.0
 # Share of that angle by which cosines beside the normal's count for what is off on flat surfaces.
 _WOBBLE = 0.5
 _CLOSED = 1e-6

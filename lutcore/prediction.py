@@ -37,7 +37,7 @@ WEIGHTS = {
     "base": 1.4e-4,
     "rough": 1.0,
     "tilt": 28.0,
-    "bumps": 0.21,
+    "bumps": 0.225,
     "residue": 0.5,
     "beside": 0.07,
     "least": 1e-4,
