@@ -2,7 +2,7 @@
 
 Times are the best of several runs in one process: nanoseconds per vertex, and per vertex, light and
 channel, of the compiled models and of plain NumPy; ratios are between runs of this process. Models
-that gather take what the mesh asks for: theirs is of 5000 vertices, in NumPy at some of them.
+that gather take what the mesh asks for: theirs is of 2000 vertices, in NumPy at some of them.
 Memory is taken in a child process, from the resident size before the call to the peak after it,
 less the output: an upper bound, because the peak may be older. POSIX.
 """
@@ -103,7 +103,7 @@ def speeds(size: int, runs: int = 9) -> dict[str, object]:
     }
 
 
-def gathering_speeds(size: int = 5000, runs: int = 3) -> dict[str, object]:
+def gathering_speeds(size: int = 2000, runs: int = 2) -> dict[str, object]:
     """Time the models whose time depends on the mesh, in NumPy at a few of its vertices."""
     surface = torus(size)
     count, each = len(surface[0].vertices), 3 * len(LIGHTS)

@@ -38,7 +38,7 @@ def test_rotating_everything_changes_nothing(model: str) -> None:
     from scipy.spatial.transform import Rotation
 
     turn = Rotation.from_rotvec([0.4, -1.1, 0.7]).as_matrix()
-    body = analytic.torus(800, major=20.0, minor=8.0)
+    body = analytic.torus(300, major=20.0, minor=8.0)
     turned = TriangleMesh(body.mesh.vertices @ turn.T, body.mesh.faces)
     direction, place = np.array([1.0, 0.3, 0.5]), np.array([-60.0, 20.0, 40.0])
     still = shade(
@@ -84,16 +84,16 @@ def test_a_large_flat_body_is_lambert(model: str) -> None:
 @pytest.mark.parametrize("model", GATHERING)
 @pytest.mark.parametrize("radius", [0.5, 5.0])
 def test_a_higher_light_never_darkens_and_never_jumps(model: str, radius: float) -> None:
-    body = analytic.sphere(600, radius=radius)
+    body = analytic.sphere(200, radius=radius)
     top = int(body.truth.normals[:, 2].argmax())
-    heights = np.linspace(-90.0, 90.0, 25)
-    # Of the vertex at the top, whose normal is within a degree or two of upwards.
+    heights = np.linspace(-90.0, 90.0, 13)
+    # Of the vertex at the top, whose normal is within some degrees of upwards.
     rising = np.array(
         [shade(body.mesh, body.truth, "skin1", [at_height(h)], model)[top] for h in heights]
     )
     brightest = rising.max(axis=0)
-    # A sphere of triangles is off a sphere by its edge squared over 8, .4 % of the radius.
-    assert (np.diff(rising, axis=0) >= -(OFF[model] + 0.004) * brightest).all()
-    # c F_t(c) has a slope of 1.1 at most, and 7.5 degrees are .131.
-    step = np.radians(7.5) * 1.1
+    # A sphere of triangles is off a sphere by its edge squared over 8, .8 % of the radius.
+    assert (np.diff(rising, axis=0) >= -(OFF[model] + 0.008) * brightest).all()
+    # c F_t(c) has a slope of 1.1 at most, and 15 degrees are .262.
+    step = np.radians(15.0) * 1.1
     assert (np.abs(np.diff(rising, axis=0)) <= (step + 2.0 * OFF[model]) * 1.2 * brightest).all()
