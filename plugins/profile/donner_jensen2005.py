@@ -21,10 +21,11 @@ _LEAST_BETA = 5e-4
 class DonnerJensen2005(DiffusionProfile):
     """Dipoles mirrored at both faces of a slab, with nothing behind it.
 
-    The sources of eq. 4 of the dipole lie, in l_u, at the depths 1 + i P and at the heights
+    The sources of the dipole lie, in l_u, at the depths 1 + i P and at the heights
     B - i P, i = -n to n, P = 2 (d + 2 z_b) for the thickness d and z_b = (B - 1)/2; those beyond
-    the faces count negative (eq. 7 to 9 of [1]_). The 2 n + 1 dipoles are as many as leave out
-    less than 1e-12 of R_d. A thick slab is the dipole of `jensen2001`.
+    the faces count negative: the multipole of [1]_, of which eq. 37 and 45 of [2]_, which it cites,
+    are the places and the sum. The 2 n + 1 dipoles are as many as leave out less than 1e-12 of R_d.
+    A thick slab is the dipole of `jensen2001`.
 
     Diffusion needs a slab of at least one mean free path.
 
@@ -32,6 +33,9 @@ class DonnerJensen2005(DiffusionProfile):
     ----------
     .. [1] C. Donner and H. W. Jensen, "Light Diffusion in Multi-Layered Translucent Materials",
        SIGGRAPH 2005.
+    .. [2] D. Contini, F. Martelli and G. Zaccanti, "Photon migration through a turbid slab
+       described by a model based on diffusion approximation. I. Theory", Applied Optics 36(19),
+       1997.
     """
 
     thickness: float = param(20.0, 0.01, 10000.0, "mm", "Thickness of the slab.")

@@ -19,15 +19,18 @@ class Bredow2002(ShadingModel):
     """M = sum over lights of E R_d <F_t> max(0, 1 - theta/angle), theta between N and w.
 
     Light falls off evenly with the angle and ends where the user says, beyond 90 degrees. It is
-    nowhere Lambert, whatever the angle: `wrap` is. Curvature and material do not matter to it.
+    Lambert at no angle, not at 90 degrees either. Curvature and material do not matter to it.
 
-    The course notes [1]_, from which Kolchin 2007 cites wrap lighting, show pictures of light
-    that wraps; the formula is that of the wrapped diffuse shader [2]_ of the same summer.
+    The course notes [1]_, which Kolchin 2007 cites for wrap lighting, have that angle as a control
+    of each light ("Falloff End (Wrap)", 90 degrees being Lambert) but print no formula; this one is
+    that of the wrapped diffuse shader [2]_ of the same summer. More wrap is more light, as [1]_
+    warns: a sphere gives out 2 (1 - sin(angle)/angle) times what Lambert's does, at 110 degrees
+    1.02 times.
 
     References
     ----------
     .. [1] R. Bredow, "Renderman on Film", SIGGRAPH 2002, course 16.
-    .. [2] ZJ, "Wrapped Diffuse Lighting model", zj.deathfall.com, August 2002.
+    .. [2] ZJ, "Wrapped Diffuse Lighting Model", zj.deathfall.com, 24 August 2002.
     """
 
     angle: float = param(110.0, 90.0, 180.0, "degrees", "Angle from the light where it ends.")

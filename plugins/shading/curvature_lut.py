@@ -31,7 +31,9 @@ class CurvatureLut(ShadingModel):
 
     On a flat surface it is Lambert with F_t(N.w), within the error of the hinges. With the flat
     area, c1 = 1, it is the full first order with F_t inside; 16 hinges bring it within 6e-4 R_d of
-    that integral.
+    that integral. A glow alone is dark where the light stands overhead: on a sphere of half l_u a
+    rising light darkens skin's red by up to 37 % of its most, and marble's by 77 %; from 1.2 l_u
+    and 5 l_u on it never does.
 
     References
     ----------

@@ -50,7 +50,9 @@ class CurvatureLutPhysical(ShadingModel):
 
     What is left of the error against a random walk is of second order in curvature: of skin1, red,
     on spheres of 2, 5, 10 and 20 l_d it is 6.0, .6, .2 and .2 %, where the dipole itself,
-    integrated over the true sphere, is 28, 15, 10 and 7 % off. Costs about twice `curvature-lut`.
+    integrated over the true sphere, is 28, 15, 10 and 7 % off. Below a radius of 2 l_u, where
+    there is no diffusion, a rising light may darken it: at half l_u by a third. Costs about twice
+    `curvature-lut`.
 
     References
     ----------

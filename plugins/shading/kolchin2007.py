@@ -23,6 +23,10 @@ class Kolchin2007(ShadingModel):
     <F_t> stands outside the integral as printed. Concave curvature is 0 (section 3). The radicand
     is |S+ w_t|^2, so that no principal direction is needed.
 
+    A first order has its end: a sphere whose radius is well below l_u gives out pi psi(0)
+    l_u/radius times what Lambert's does, all of it glow, and is dark where the light stands
+    overhead. A large one gives out 1 + E2 times as much; see `curvature-lut`.
+
     Read around these slips of the printed text:
 
     - "k1 l_d, k2 l_d >> 1" before eq. 10 must be "<< 1": the radii are much greater than l_d.

@@ -23,8 +23,9 @@ class Kolchin2007Simplified(ShadingModel):
     The light's azimuth is ignored; on a sphere that changes nothing. Concave curvature is 0
     (section 3), so that k1 and k2 here are those that are clamped.
 
-    The slips of the printed text are those of `kolchin2007`: "k1 l_d, k2 l_d >> 1" for "<< 1"; the
-    factor alpha'/(4 pi^2) before p for alpha'/(4 pi); and convex curvature is negative there.
+    Spheres of short radius make light as with `kolchin2007`. The slips of the printed text are the
+    same: "k1 l_d, k2 l_d >> 1" for "<< 1"; the factor alpha'/(4 pi^2) before p for alpha'/(4 pi);
+    and convex curvature is negative there.
 
     References
     ----------

@@ -22,13 +22,15 @@ _TURNS = np.arange(-4, 5)
 class Kubo2010(ShadingModel):
     """M = sum over lights of E R_d <F_t> (G * max(cos, 0))(theta), G a Gaussian as wide as curved.
 
-    The CDRF of [1]_: cos theta = N.w is blurred over the angle theta by a Gaussian whose standard
-    deviation is proportional to curvature, sigma = sigma_0 kappa. [1]_ takes sigma_0 from a fit to
-    simulated pictures or from the artist; here it is that of the material, by equal second
-    moments: sigma_0^2 = <r^2>/2, the mean square of the line spread of the diffusion profile,
-    channel by channel. kappa is the mean convex curvature, (k1 + k2)/2 with concave curvature 0.
+    After the CDRF of [1]_ and [2]_: cos theta = N.w is blurred over the angle theta by a Gaussian
+    whose standard deviation is proportional to curvature, sigma = sigma_0 kappa. [2]_ takes its one
+    parameter from a fit to simulated data or from the artist; here it is that of the material, by
+    equal second moments: sigma_0^2 = <r^2>/2, the mean square of the line spread of the diffusion
+    profile, channel by channel. kappa is the mean convex curvature, (k1 + k2)/2 with concave
+    curvature 0.
 
-    One Gaussian has neither the peak nor the tail of diffusion, and no Fresnel factor is inside.
+    One Gaussian has neither the peak nor the tail of diffusion, and no Fresnel factor is inside. A
+    small ball gives out up to 4/pi times what Lambert does.
     Beyond sigma = 4 radians, where the light is even all around, the colour no longer changes.
     The table is within 1e-5 of the blur. Holds, within the 5.6 % of <F_t>, for radii above 5 l_d.
     Costs what `penner2011` costs.
@@ -36,9 +38,9 @@ class Kubo2010(ShadingModel):
     References
     ----------
     .. [1] H. Kubo, Y. Dobashi and S. Morishima, "Curvature-Dependent Reflectance Function for
-       Rendering Translucent Materials", SIGGRAPH 2010 Talks; in full as "Curvature-Dependent
-       Reflectance Function for Interactive Rendering of Subsurface Scattering", International
-       Journal of Virtual Reality 10(1), 2011.
+       Rendering Translucent Materials", SIGGRAPH 2010 Talks, article 46.
+    .. [2] The same authors, "Curvature-Dependent Reflectance Function for Interactive Rendering of
+       Subsurface Scattering", International Journal of Virtual Reality.
     """
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:

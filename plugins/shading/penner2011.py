@@ -24,7 +24,7 @@ class Penner2011(ShadingModel):
     """M = sum over lights of E R_d <F_t> D(N.w, r), D the profile's blur along a ring of radius r.
 
     D(theta, r) = int max(cos(theta + x), 0) R(2 r sin(x/2)) dx / int R(2 r sin(x/2)) dx over the
-    ring (section 1.3.2 of [1]_), with the radial profile R of the material itself instead of the
+    ring (section 1.4 of [1]_), with the radial profile R of the material itself instead of the
     Gaussians of human skin. 1/r is the mean convex curvature, (k1 + k2)/2 with concave curvature
     0; [1]_ takes |dN|/|dp| of the screen. A ring has no second direction, so the profile is blurred
     by too little near its centre and too much at its tails, and no Fresnel factor is inside.
@@ -37,8 +37,8 @@ class Penner2011(ShadingModel):
 
     References
     ----------
-    .. [1] E. Penner and G. Borshukov, "Pre-Integrated Skin Shading", GPU Pro 2, 2011; shown by
-       E. Penner at SIGGRAPH 2011.
+    .. [1] E. Penner and G. Borshukov, "Pre-Integrated Skin Shading", GPU Pro 2, part II,
+       chapter 1, 2011; shown by E. Penner at SIGGRAPH 2011.
     """
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:

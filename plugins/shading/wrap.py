@@ -18,8 +18,9 @@ from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 class Wrap(ShadingModel):
     """M = sum over lights of E R_d <F_t> max(0, (N.w + width)/(1 + width)).
 
-    A picture of translucency without physics: the same glow on flat and curved parts. With
-    width 0 it is Lambert.
+    A picture of translucency without physics: the same glow on flat and curved parts, and 1 + width
+    times the light that Lambert gives out (section 16.2 of [1]_ has no normalisation). With width 0
+    it is Lambert.
 
     References
     ----------

@@ -16,6 +16,7 @@ from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
 from lutcore.prediction import Scene
 from lutcore.shading import model_registry, shade, shading_inputs, shading_models
+from tests.plugins.shading_violations import ENERGY, LAMBERT, MONOTONE, cases
 from tests.surfaces import bent, sphere, torus
 
 FloatArray = NDArray[np.float64]
@@ -23,23 +24,6 @@ MODELS = shading_models()
 LOCAL = [name for name in MODELS if model_registry.get(name).local]
 # What a flat surface lets in: F_t(N.w) within the error given, and <F_t> for the other models.
 DIRECTIONAL = {"curvature-lut": hinges(1.3, 4).error, "monge-patch": 0.0, "sphere-table": 0.0}
-# Models whose flat surface is not Lambert: by design, or because its albedo depends on N.w, which
-# a test of its own checks.
-NOT_LAMBERT = ("wrap", "bredow2002", "curvature-lut-physical")
-# Models that do not say that they never give out more than they take in, and do: blurred around a
-# ring instead of over a surface, or of first order in curvature, or wrapped.
-CREATING = ("kolchin2007", "kolchin2007-simplified", "kubo2010", "penner2011", "wrap")
-# Models that a more curved surface leaves monotone in the light's height: blurs and exact integrals
-# are, a glow that is added to Lambert is not.
-MONOTONE = (
-    "bredow2002",
-    "kubo2010",
-    "lambert",
-    "monge-patch",
-    "penner2011",
-    "sphere-table",
-    "wrap",
-)
 LIGHTS: list[Light] = [
     DirectionalLight((1.0, 0.3, 0.5), (1.0, 0.9, 0.8)),
     PointLight((-60.0, 20.0, 40.0), (3000.0, 2000.0, 4000.0)),
@@ -176,7 +160,7 @@ def test_rotating_everything_changes_nothing(model: str) -> None:
     np.testing.assert_allclose(again, on_torus(model, LIGHTS[:2]), rtol=0.0, atol=ROUNDING)
 
 
-@pytest.mark.parametrize("model", [name for name in LOCAL if name not in NOT_LAMBERT])
+@pytest.mark.parametrize("model", cases(LAMBERT, LOCAL))
 def test_a_large_radius_is_lambert(model: str) -> None:
     cosines = np.linspace(-1.0, 1.0, 201)
     reflectance = bake("skin1").total
@@ -321,19 +305,12 @@ def leaving(model: str, name: str) -> float:
     return float(np.max(shares))
 
 
-@pytest.mark.parametrize("model", [name for name in LOCAL if name not in CREATING])
-@pytest.mark.parametrize("name", ["skin1", "marble", "spectralon"])
+@pytest.mark.parametrize(("model", "name"), cases(ENERGY, LOCAL, ("skin1", "marble", "spectralon")))
 def test_no_more_light_leaves_a_sphere_than_falls_on_it(model: str, name: str) -> None:
     assert leaving(model, name) <= 1.0
 
 
-@pytest.mark.parametrize("model", CREATING)
-def test_models_that_claim_no_energy_balance_have_none(model: str) -> None:
-    assert leaving(model, "spectralon") > 1.0
-
-
-@pytest.mark.parametrize("model", MONOTONE)
-@pytest.mark.parametrize("radius", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize(("model", "radius"), cases(MONOTONE, LOCAL, (0.1, 0.5, 2.0)))
 def test_a_higher_light_never_darkens_a_strongly_curved_surface(model: str, radius: float) -> None:
     cosines = np.cos(np.linspace(np.pi, 0.0, 361))
     shaded = shade(*sphere(cosines, radius), "skin1", [ABOVE], model)
