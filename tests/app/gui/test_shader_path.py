@@ -1,5 +1,7 @@
 """Shading at pixels in the window: what chooses it, what moves it, what the status bar says."""
 
+import threading
+
 import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
@@ -163,12 +165,19 @@ def test_a_mesh_that_is_slow_to_draw_is_not_drawn_for_the_race(
         draw()
         screens.append(screen())
 
-    on_screen = screen()
+    on_screen, whole = screen(), threading.Event()
+
+    def no_time(*_) -> float:
+        assert whole.wait(60.0)
+        return -1e3
+
     monkeypatch.setattr(canvas._stand_in, "show", shown)
     monkeypatch.setattr(canvas, "draw_unseen", drawn)
     monkeypatch.setattr(type(canvas), "seconds", property(lambda _: 0.7))
-    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: -1e3)
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", no_time)
     click_menu(qtbot, window, "View", "Compute shading", "The faster way")
+    qtbot.waitUntil(lambda: screen() == on_screen)  # the menus lay over the view
+    whole.set()
     qtbot.waitUntil(lambda: "each step" in window.pixel_path.reason, timeout=60_000)
     np.testing.assert_array_equal(pixels(window), before)
     if standing_in:
