@@ -104,6 +104,7 @@ def test_what_has_no_shader_is_shaded_at_vertices_with_the_reason(window, qtbot)
 def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way) -> None:
     """Frames are measured; what computing takes is given, so that one or the other wins."""
     monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: seconds)
+    monkeypatch.setattr("app.gui.pixel_race._LONG", 1e3)  # however slow it draws here
     window = open_window(Session(mesh="sample:sphere"), path="automatic")
     path = window.pixel_path
 
@@ -115,6 +116,19 @@ def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way)
     settled(qtbot, window)
     assert _says(window) == way
     assert (path.reason != "") == (way == "per vertex")
+
+
+def test_a_frame_that_is_slow_by_chance_does_not_decide(open_window, qtbot, monkeypatch) -> None:
+    window = open_window(Session(mesh="sample:sphere"))
+    canvas, again = window.canvas, []
+    monkeypatch.setattr(canvas, "repaint", lambda: again.append(canvas.draw()))
+    fast = property(lambda _: 0.7 if len(again) < 2 else 0.01)
+    monkeypatch.setattr(type(canvas), "seconds", fast)
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: 1e3)
+    click_menu(qtbot, window, "View", "Compute shading", "The faster way")
+    path = window.pixel_path
+    qtbot.waitUntil(lambda: not path.racing and (canvas.by_pixel is not None or path.reason != ""))
+    assert path.reason == "" and len(again) == 2
 
 
 def test_computing_is_measured(window) -> None:
