@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
 _AUTO = "auto"  # that of `lutcore.shading`, which takes a while to load
-_GREY = 1.0  # s that the worker waits for the first frame at most
+_GREY = 10.0  # s that the worker waits for the first frame at most, in case none comes
 # A change of anything else leaves what is being computed of use: it is seen while dragging.
 _LIVE = {
     "lights",

@@ -91,7 +91,8 @@ class PixelRace(QObject):
     """Draws the view a few times in both ways, a frame for each turn of the event loop.
 
     Where the mesh is slow to draw, its coarse stand-in is drawn, smaller and unseen, and the mesh
-    is taken to be slower by the same factor in both ways; where there is none, the vertices win.
+    is taken to be slower by the same factor in both ways; where there is none, the vertices win,
+    unless the last frame was slow by chance.
 
     Parameters
     ----------
@@ -119,6 +120,7 @@ class PixelRace(QObject):
         self._canvas, self._look, self._computing = canvas, look, computing
         self._move, self._done = move, done
         self._seconds: dict[bool, list[float]] = {False: [], True: []}
+        self._drawn_again = 0
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._frame)
         self._timer.start(0)
@@ -135,7 +137,12 @@ class PixelRace(QObject):
             return  # something moves: later
         slow = canvas.seconds > _LONG
         if slow and not canvas.has_coarse:
-            self._end(canvas.seconds, inf)
+            # It may have been the first, or held up by others.
+            if self._drawn_again < _FRAMES:
+                self._drawn_again += 1
+                canvas.repaint()
+            else:
+                self._end(canvas.seconds, inf)
             return
         by_pixel = len(self._seconds[False]) == _FRAMES
         if by_pixel and canvas.by_pixel is None:

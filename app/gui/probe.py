@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Callable
 
 from psygnal import Signal
 
@@ -42,6 +43,28 @@ class Probing:
         right, up : float
             Where the mouse is; see `app.gui.orbit.ray`.
         """
+        self._ask("probe", camera, right, up, self._show)
+
+    def pin(self, camera: Camera, right: float, up: float) -> None:
+        """Keep what is under the mouse now in the table, wherever it goes meanwhile.
+
+        Parameters
+        ----------
+        camera : Camera
+            Of the view.
+        right, up : float
+            See `look`.
+        """
+        self._ask("pin", camera, right, up, self._pin)
+
+    def _ask(
+        self,
+        key: str,
+        camera: Camera,
+        right: float,
+        up: float,
+        done: Callable[[Probe | None], None],
+    ) -> None:
         outcome = self._controller.outcome
         if outcome is None:
             return
@@ -58,17 +81,17 @@ class Probing:
                 return found
             return with_readings(found, session, pipeline, camera, exposure)
 
-        self._controller.run("probe", ask, self._show)
+        self._controller.run(key, ask, done)
 
     def leave(self) -> None:
         """Forget what is under the mouse: it left the view."""
         self._show(None)
 
-    def pin(self) -> None:
-        """Keep what is under the mouse in the table; a vertex is pinned once."""
-        found = self.current
+    def _pin(self, found: Probe | None) -> None:
+        self._show(found)
         if found is None:
             return
+        # A vertex is pinned once.
         kept = [one for one in self.pins if (one.mesh, one.vertex) != (found.mesh, found.vertex)]
         self.pins = [*kept, found]
         self.pins_changed.emit()

@@ -87,6 +87,12 @@ class Recovery:
         self._writing = threading.Lock()
         self._thread: threading.Thread | None = None
 
+    @property
+    def busy(self) -> bool:
+        """Whether what is to be kept is not written yet."""
+        with self._writing, self._wake:
+            return self._waiting is not None
+
     def keep(self, session: Session, path: Path | None) -> None:
         """Keep a session soon, on a thread of its own: a slow disk stops nobody.
 

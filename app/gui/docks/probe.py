@@ -73,7 +73,6 @@ class ProbePanel(QSplitter):
         self._rest.setSingleShot(True)
         self._rest.setInterval(_REST)
         self._rest.timeout.connect(self._ask)
-        self._pin_next = False
         self.values = QTreeWidget(self)
         self.values.setHeaderLabels(["Under the mouse", "", "predicted error"])
         self.values.setRootIsDecorated(False)
@@ -130,9 +129,9 @@ class ProbePanel(QSplitter):
         self.probing.leave()
 
     def _on_click(self, place: Place) -> None:
-        if self.isVisible() and place.panel is not None:
-            self._place, self._pin_next = place, True
-            self._ask()
+        camera = self._window.canvas.camera
+        if self.isVisible() and camera is not None and place.panel is not None:
+            self.probing.pin(camera, place.right, place.up)
 
     def _ask(self) -> None:
         camera, place = self._window.canvas.camera, self._place
@@ -162,9 +161,6 @@ class ProbePanel(QSplitter):
             error_words = "" if one.error is None else f"{100.0 * one.error:.3g} % of R_d"
             self._add(one.model, words, error_words).setIcon(1, _swatch(one.color))
         self._widen()
-        if self._pin_next:
-            self._pin_next = False
-            self.probing.pin()
 
     def _widen(self) -> None:
         for column in range(self.values.columnCount()):

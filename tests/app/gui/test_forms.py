@@ -7,8 +7,8 @@ from qtpy.QtWidgets import QApplication, QLabel, QWidget
 
 from app.session import Method, Session
 from tests.app.gui.conftest import settled
+from tests.app.gui.hands import choose
 from tests.app.gui.test_fits import faults
-from tests.app.gui.test_shading_dock import pick
 
 
 def labels(form: QWidget) -> list[str]:
@@ -33,7 +33,8 @@ def test_the_old_parameters_are_gone_at_every_moment(window, qtbot, dock, part) 
     names = [form.names.itemText(at) for at in range(form.names.count())]
     assert len(names) > 3
     for name in names:
-        pick(form.names, name)
+        choose(qtbot, form.names, name)
+        assert form.names.currentText() == name
         expected = [
             one.text() for one in form.form.findChildren(QLabel) if not one.isHidden()
         ]  # as it will be
@@ -46,8 +47,8 @@ def test_the_old_parameters_are_gone_at_every_moment(window, qtbot, dock, part) 
         # What is drawn now is what stays.
         now = grabbed(form)
         window.controller.worker.cancel()
-        qtbot.wait(60)
-        assert len(form.findChildren(type(form.form))) == 1
+        settled(qtbot, window)
+        qtbot.waitUntil(lambda: len(form.findChildren(type(form.form))) == 1)
         np.testing.assert_array_equal(grabbed(form), now)
     settled(qtbot, window)
 
@@ -64,7 +65,8 @@ def test_the_sides_of_a_comparison_follow_at_once(open_window, qtbot) -> None:
     settled(qtbot, window)
     side = panel.sides[0]
     for name in ("kubo2010", "lambert", "gather", "curvature-lut-physical"):
-        pick(side.names, name)
+        choose(qtbot, side.names, name)
+        assert side.names.currentText() == name
         for _ in range(3):
             assert len([one for one in side.findChildren(type(side.form)) if one.isVisible()]) <= 1
             QApplication.processEvents()

@@ -1,6 +1,7 @@
 """Point at the mesh, pin, copy, save."""
 
 import csv
+import threading
 
 import numpy as np
 import pytest
@@ -87,10 +88,31 @@ def test_a_click_pins_and_the_table_can_be_copied_and_saved(window, qtbot, panel
     assert not (np.abs(pixels(window).astype(int) - yellow).max(axis=2) < 8).any()
 
 
+def test_a_click_pins_what_it_was_on_wherever_the_mouse_goes_meanwhile(
+    window, qtbot, panel
+) -> None:
+    canvas, free = window.canvas, threading.Event()
+    window.controller.run("other work", lambda _: free.wait(60.0), lambda _: None)
+    qtbot.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=_middle(window))
+    place = _middle(window) + QPoint(40, 0)
+    move(qtbot, canvas, place)
+    qtbot.waitUntil(lambda: not panel._rest.isActive())
+    free.set()
+    settled(qtbot, window)
+    (pinned,) = panel.probing.pins
+    assert pinned.vertex != panel.probing.current.vertex
+    qtbot.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=_middle(window))
+    settled(qtbot, window)
+    assert [one.vertex for one in panel.probing.pins] == [pinned.vertex]
+
+
 def test_beside_the_mesh_there_is_nothing(window, qtbot, panel) -> None:
     qtbot.mouseClick(window.canvas, Qt.MouseButton.LeftButton, pos=QPoint(5, 5))
     settled(qtbot, window)
     assert panel.probing.current is None
+    assert panel.probing.pins == []
+    # Nor is what the mouse goes to next pinned.
+    move(qtbot, window.canvas, _middle(window), lambda: panel.probing.current is not None)
     assert panel.probing.pins == []
 
 

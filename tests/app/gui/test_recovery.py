@@ -104,8 +104,9 @@ def test_the_next_window_offers_it_and_a_click_restores_it(open_window, qtbot, c
 
 def _kept(window, qtbot) -> bool:
     """Whether a crash now would be followed by an offer."""
-    qtbot.wait(1300)  # longer than changes are gathered
-    return window.rescue.recovery.file.exists()
+    recovery = window.rescue.recovery
+    qtbot.waitUntil(lambda: not recovery.busy)  # changes are gathered, and a disk may be slow
+    return recovery.file.exists()
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """Shading at pixels in the window: what chooses it, what moves it, what the status bar says."""
 
+import threading
+
 import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
@@ -102,6 +104,7 @@ def test_what_has_no_shader_is_shaded_at_vertices_with_the_reason(window, qtbot)
 def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way) -> None:
     """Frames are measured; what computing takes is given, so that one or the other wins."""
     monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: seconds)
+    monkeypatch.setattr("app.gui.pixel_race._LONG", 1e3)  # however slow it draws here
     window = open_window(Session(mesh="sample:sphere"), path="automatic")
     path = window.pixel_path
 
@@ -113,6 +116,19 @@ def test_the_faster_way_is_chosen(open_window, qtbot, monkeypatch, seconds, way)
     settled(qtbot, window)
     assert _says(window) == way
     assert (path.reason != "") == (way == "per vertex")
+
+
+def test_a_frame_that_is_slow_by_chance_does_not_decide(open_window, qtbot, monkeypatch) -> None:
+    window = open_window(Session(mesh="sample:sphere"))
+    canvas, again = window.canvas, []
+    monkeypatch.setattr(canvas, "repaint", lambda: again.append(canvas.draw()))
+    fast = property(lambda _: 0.7 if len(again) < 2 else 0.01)
+    monkeypatch.setattr(type(canvas), "seconds", fast)
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: 1e3)
+    click_menu(qtbot, window, "View", "Compute shading", "The faster way")
+    path = window.pixel_path
+    qtbot.waitUntil(lambda: not path.racing and (canvas.by_pixel is not None or path.reason != ""))
+    assert path.reason == "" and len(again) == 2
 
 
 def test_computing_is_measured(window) -> None:
@@ -163,12 +179,19 @@ def test_a_mesh_that_is_slow_to_draw_is_not_drawn_for_the_race(
         draw()
         screens.append(screen())
 
-    on_screen = screen()
+    on_screen, whole = screen(), threading.Event()
+
+    def no_time(*_) -> float:
+        assert whole.wait(60.0)
+        return -1e3
+
     monkeypatch.setattr(canvas._stand_in, "show", shown)
     monkeypatch.setattr(canvas, "draw_unseen", drawn)
     monkeypatch.setattr(type(canvas), "seconds", property(lambda _: 0.7))
-    monkeypatch.setattr("app.gui.pixel_path.step_seconds", lambda *_: -1e3)
+    monkeypatch.setattr("app.gui.pixel_path.step_seconds", no_time)
     click_menu(qtbot, window, "View", "Compute shading", "The faster way")
+    qtbot.waitUntil(lambda: screen() == on_screen)  # the menus lay over the view
+    whole.set()
     qtbot.waitUntil(lambda: "each step" in window.pixel_path.reason, timeout=60_000)
     np.testing.assert_array_equal(pixels(window), before)
     if standing_in:
