@@ -137,16 +137,18 @@ def detail_seen(
     scale = scale_between(glow, extent, on.spacing * unit)
     filters.append(series_at(scale / unit, on.operator.bound))
     change = filtered(on.operator, on.fields, filters, part(progress, 0.3, 0.9))
-    normals, shape = np.empty((3, count, 3)), np.empty((3, count, 6))
+    # S+ of a channel goes where its smoothed fields were, which are as large and done with then:
+    # memory that is touched first costs most here.
+    convex = change[:6].reshape(-1).view(np.float64).reshape(3, -1, 6)
+    normals = np.empty((3, count, 3))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
         facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
         normals[channel] = welded.spread(facing, 0.0)
-        # Straight to its place where it can be: memory that is touched first costs most here.
-        part_of = np.empty((len(facing), 6)) if welded.moved else shape[channel]
-        _convex_part(facing, tensors, 1.0 / (unit * size), part_of)
-        if welded.moved:
-            shape[channel] = welded.spread(part_of, 0.0)
+        _convex_part(facing, tensors, 1.0 / (unit * size), convex[channel])
+    shape = convex
+    if welded.moved:
+        shape = np.stack([welded.spread(one, 0.0) for one in convex])
     bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
     smooth = welded.spread(smoothed_normals(on.fields, change, len(filters) - 1), 0.0)
     return Detail(normals, shape, bare, shares * widths, scale, smooth)

@@ -18,6 +18,25 @@ from lutcore.parameters import Parameters
 T = TypeVar("T", bound=Parameters)
 
 
+def built_in(package: str) -> set[str]:
+    """Return the names of a package's plug-ins, importing none.
+
+    Parameters
+    ----------
+    package : str
+        Whose modules they are.
+
+    Returns
+    -------
+    set of str
+        In kebab case.
+    """
+    spec = find_spec(package)
+    paths = spec.submodule_search_locations if spec else None
+    found = pkgutil.iter_modules(paths or [])
+    return {module.name.replace("_", "-") for module in found if module.name[0] != "_"}
+
+
 class Registry(Generic[T]):
     """The plug-ins of one kind.
 
@@ -66,7 +85,7 @@ class Registry(Generic[T]):
             Built-in names and those of installed entry points.
         """
         outside = {entry.name for entry in entry_points(group=self._group)}
-        return sorted(self._built_in() | outside | set(self._loaded))
+        return sorted(built_in(self._package) | outside | set(self._loaded))
 
     def get(self, name: str) -> type[T]:
         """Return the plug-in of that name.
@@ -115,14 +134,8 @@ class Registry(Generic[T]):
                 return name
         raise ParameterError(f"no {self.kind} is registered as {plugin.__name__}")
 
-    def _built_in(self) -> set[str]:
-        spec = find_spec(self._package)
-        paths = spec.submodule_search_locations if spec else None
-        found = pkgutil.iter_modules(paths or [])
-        return {module.name.replace("_", "-") for module in found if module.name[0] != "_"}
-
     def _import(self, name: str) -> None:
-        if name in self._built_in():
+        if name in built_in(self._package):
             importlib.import_module(f"{self._package}.{name.replace('-', '_')}")
             return
         for entry in entry_points(group=self._group, name=name):
