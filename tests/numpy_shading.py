@@ -1,6 +1,6 @@
 """Shading in plain NumPy: what the compiled models are compared with, in value and in speed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,15 +40,22 @@ def light_vectors(light: Light, points: FloatArray) -> tuple[FloatArray, FloatAr
     return to_light, irradiance
 
 
+def _falling(
+    mesh: TriangleMesh, curvatures: PrincipalCurvatures, lights: Sequence[Light]
+) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Yield of each light N.w, (n,), its irradiance and w, (n, 3)."""
+    for light in lights:
+        w, irradiance = light_vectors(light, mesh.vertices)
+        yield np.einsum("ij,ij->i", curvatures.normals, w), irradiance, w
+
+
 def lambert(
     mesh: TriangleMesh, curvatures: PrincipalCurvatures, material: str, lights: Sequence[Light]
 ) -> FloatArray:
     """Lambert with the mean transmittance."""
     table = bake(material)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
         out += irradiance * np.maximum(cosine, 0.0)[:, None]
     return out * (table.total * table.entering)
 
@@ -59,9 +66,8 @@ def lambert_directional(
     """Lambert with the transmittance of the light's direction."""
     table = bake(material)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        lit = np.maximum(np.einsum("ij,ij->i", curvatures.normals, w), 0.0)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
+        lit = np.maximum(cosine, 0.0)
         for channel, eta in enumerate(table.eta):
             # Most materials have one index: then its root is taken once.
             if channel == 0 or eta != table.eta[channel - 1]:
@@ -76,9 +82,8 @@ def bredow2002(
     """Wrap lighting by the default angle."""
     table = bake(material)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        theta = np.arccos(np.clip(np.einsum("ij,ij->i", curvatures.normals, w), -1.0, 1.0))
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
+        theta = np.arccos(np.clip(cosine, -1.0, 1.0))
         out += irradiance * np.maximum(1.0 - theta / np.radians(110.0), 0.0)[:, None]
     return out * (table.total * table.entering)
 
@@ -89,9 +94,7 @@ def wrap(
     """Wrap lighting of the default width."""
     table = bake(material)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
         out += irradiance * np.maximum((cosine + 0.2) / 1.2, 0.0)[:, None]
     return out * (table.total * table.entering)
 
@@ -103,9 +106,7 @@ def kolchin2007(
     table = bake(material)
     k1, k2 = np.maximum(curvatures.k1, 0.0), np.maximum(curvatures.k2, 0.0)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, w in _falling(mesh, curvatures, lights):
         w1 = np.einsum("ij,ij->i", curvatures.d1, w)
         w2 = np.einsum("ij,ij->i", curvatures.d2, w)
         kappa = np.sqrt((w1 * k1) ** 2 + (w2 * k2) ** 2)
@@ -123,9 +124,7 @@ def kolchin2007_simplified(
     k1, k2 = np.maximum(curvatures.k1, 0.0), np.maximum(curvatures.k2, 0.0)
     curvature = np.sqrt(0.5 * (k1**2 + k2**2))
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
         kappa = np.sqrt(np.maximum(1.0 - cosine**2, 0.0)) * curvature
         for channel in range(3):
             p = even_form(cosine, table.mean_free_path[channel] * kappa, table, channel)
@@ -175,9 +174,7 @@ def _bent_exitance(
 ) -> FloatArray:
     bend = 0.5 * (np.maximum(curvatures.k1, 0.0) + np.maximum(curvatures.k2, 0.0))
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
         for channel, table in enumerate(tables):
             s = np.minimum(length[channel] * bend, table.limit)
             lit = np.maximum(bent(cosine, s, table, eta[channel]), 0.0)
@@ -229,9 +226,7 @@ def curvature_lut(
     fits = [hinges(eta, 4) for eta in table.eta]
     k1, k2 = np.maximum(curvatures.k1, 0.0), np.maximum(curvatures.k2, 0.0)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        cosine = np.einsum("ij,ij->i", curvatures.normals, w)
+    for cosine, irradiance, w in _falling(mesh, curvatures, lights):
         w1 = np.einsum("ij,ij->i", curvatures.d1, w)
         w2 = np.einsum("ij,ij->i", curvatures.d2, w)
         kappa = np.sqrt((w1 * k1) ** 2 + (w2 * k2) ** 2)
@@ -282,12 +277,10 @@ def curvature_lut_physical(
         powers = _inverse_albedo(medium) @ np.vander(x, 5, increasing=True).T
         second = table.mean_square[channel] / 16.0 * (3.0 * k1**2 + 2.0 * k1 * k2 + 3.0 * k2**2)
         fit = hinges(eta, 4)
-        for light in lights:
-            w, irradiance = light_vectors(light, mesh.vertices)
+        for cosine, irradiance, w in _falling(mesh, curvatures, lights):
             w1 = np.einsum("ij,ij->i", curvatures.d1, w)
             w2 = np.einsum("ij,ij->i", curvatures.d2, w)
             kappa, bulge = np.hypot(w1 * k1, w2 * k2), k1 * w1**2 + k2 * w2**2
-            cosine = np.einsum("ij,ij->i", curvatures.normals, w)
             g = _displaced(_inner(np.clip(cosine, 0.0, 1.0), eta), beta, eta, k1, k2)
             entry = (cosine + g * bulge) / np.sqrt(1.0 + (g * kappa) ** 2)
             lit = np.clip(entry, 0.0, 1.0)
@@ -325,9 +318,7 @@ def monge_patch(
     curvature = np.sqrt(0.5 * squares)
     p = np.clip(2.0 - (k1 + k2) ** 2 / squares, 0.0, 1.0)
     out = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        a = np.einsum("ij,ij->i", curvatures.normals, w)
+    for a, irradiance, w in _falling(mesh, curvatures, lights):
         w1 = np.einsum("ij,ij->i", curvatures.d1, w)
         w2 = np.einsum("ij,ij->i", curvatures.d2, w)
         bend = np.hypot(w1 * k1, w2 * k2)
@@ -358,9 +349,8 @@ def gather(
     """The dipole summed over every triangle in 64 parts, at some points."""
     substance, profile = resolved(material), diffusion_profile("jensen2001")
     entering = np.zeros(mesh.vertices.shape)
-    for light in lights:
-        w, irradiance = light_vectors(light, mesh.vertices)
-        lit = np.maximum(np.einsum("ij,ij->i", curvatures.normals, w), 0.0)
+    for cosine, irradiance, _ in _falling(mesh, curvatures, lights):
+        lit = np.maximum(cosine, 0.0)
         let_in = np.stack([lit * transmittance(lit, eta) for eta in substance.eta], axis=1)
         entering += irradiance * let_in
     upright = [(i + 1 / 3, j + 1 / 3) for i in range(8) for j in range(8 - i)]
