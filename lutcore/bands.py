@@ -92,7 +92,10 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     start, neighbour = on.operator.start, on.operator.neighbour
     middle = len(smoothed.scales) // 2
     count = len(smoothed.scales) - 1
-    energy = _energies(smoothed.tensors, on.areas / on.spacing**2, middle, _TOGETHER)
+    # Filled up with zeros to columns that one loop averages together.
+    columns = _TOGETHER * ((count + 1) // _TOGETHER + 1)
+    energy = np.empty((len(on.areas), columns), np.float32)
+    _energies(smoothed.tensors, on.areas / on.spacing**2, middle, energy)
     spare = np.empty_like(energy)
     links = (start.view(np.uint32), neighbour.view(np.uint32))
     for _ in range(_PASSES):
@@ -144,16 +147,13 @@ def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArr
 
 
 @compiled(parallel=True)
-def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: int) -> SingleArray:
-    """Return half the squared change of k1 and k2 from each scale to the next, areas, and lean.
-
-    Filled up with zeros to a multiple of `together` columns.
+def _energies(tensors: SingleArray, areas: FloatArray, middle: int, energy: SingleArray) -> None:
+    """Write half the squared change of k1 and k2 from each scale to the next, areas, and lean.
 
     To first order k1 and k2 change by the entries of the difference on the diagonal of the
     principal frame, and by the one off it only where k1 and k2 are closer than it is large.
     """
     count, scales = tensors.shape[0], tensors.shape[1] - 1
-    energy = np.empty((count, together * ((scales + 1) // together + 1)), np.float32)
     for i in prange(count):
         energy[i, scales] = areas[i]
         for band in range(scales + 1, energy.shape[1]):
@@ -175,7 +175,6 @@ def _energies(tensors: SingleArray, areas: FloatArray, middle: int, together: in
             energy[i, band] = mean * mean + along * along + mixed * across * across
             if band == scales - 1:
                 energy[i, scales + 1] = 2.0 * mean * along
-    return energy
 
 
 @compiled(parallel=True, packed=True)

@@ -143,7 +143,6 @@ def _normal(fields: FloatArray, change: SingleArray, base: int, i: int) -> Vecto
     return nx / length, ny / length, nz / length
 
 
-@compiled(parallel=True)
 def smoothed_normals(fields: FloatArray, change: SingleArray, base: int) -> FloatArray:
     """Return the normals after one smoothing, where nothing else of it is wanted.
 
@@ -162,12 +161,16 @@ def smoothed_normals(fields: FloatArray, change: SingleArray, base: int) -> Floa
         Unit normals, to the last bit those of `shape_operators`.
     """
     normals = np.empty((len(fields), 3))
-    for i in prange(len(fields)):
-        normals[i, 0], normals[i, 1], normals[i, 2] = _normal(fields, change, base, i)
+    _write_normals(fields, change, base, normals)
     return normals
 
 
-@compiled(parallel=True, packed=True)
+@compiled(parallel=True)
+def _write_normals(fields: FloatArray, change: SingleArray, base: int, normals: FloatArray) -> None:
+    for i in prange(len(fields)):
+        normals[i, 0], normals[i, 1], normals[i, 2] = _normal(fields, change, base, i)
+
+
 def shape_operators(
     start: IndexArray,
     neighbour: IndexArray,
@@ -199,15 +202,34 @@ def shape_operators(
     tuple of ndarray
         `Smoothed.normals`, and `tensors` and `stretch` of the smoothings from `first` to S.
     """
-    count, scales = change.shape[1], change.shape[0]
+    scales, count = change.shape[:2]
+    normals = np.empty((count, 3))
+    tensors = np.empty((count, scales + 1 - first, 3), np.float32)
+    stretch = np.empty((count, scales + 1 - first), np.float32)
+    given = start, neighbour, fields, change, base, spacing, first
+    _write_operators(*given, normals, tensors, stretch)
+    return normals, tensors, stretch
+
+
+@compiled(parallel=True, packed=True)
+def _write_operators(
+    start: IndexArray,
+    neighbour: IndexArray,
+    fields: FloatArray,
+    change: SingleArray,
+    base: int,
+    spacing: float,
+    first: int,
+    normals: FloatArray,
+    tensors: SingleArray,
+    stretch: SingleArray,
+) -> None:
+    scales, count = change.shape[:2]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
     widest = 0
     for i in range(count):
         widest = max(widest, start[i + 1] - start[i])
-    normals = np.empty((count, 3))
-    tensors = np.empty((count, scales + 1 - first, 3), np.float32)
-    stretch = np.empty((count, scales + 1 - first), np.float32)
     for i in prange(count):
         n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n
@@ -245,7 +267,6 @@ def shape_operators(
                 cxx = cxy = cyy = 0.0
             s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)
             tensors[i, to, 0], tensors[i, to, 1], tensors[i, to, 2] = s
-    return normals, tensors, stretch
 
 
 @compiled()

@@ -46,9 +46,10 @@ def vertex_corners(mesh: TriangleMesh) -> Corners:
     Corners
         The corners, grouped by vertex.
     """
-    return Corners(
-        *_vertex_corners(mesh.faces, len(mesh.vertices), min(numba.get_num_threads(), _MOST_CHUNKS))
-    )
+    chunks, count = min(numba.get_num_threads(), _MOST_CHUNKS), len(mesh.vertices)
+    start, corner = np.empty(count + 1, np.int32), np.empty(mesh.faces.size, np.int32)
+    _vertex_corners(mesh.faces, np.zeros((chunks, count), np.int32), start, corner)
+    return Corners(start, corner)
 
 
 def face_areas(mesh: TriangleMesh) -> FloatArray:
@@ -64,7 +65,7 @@ def face_areas(mesh: TriangleMesh) -> FloatArray:
     ndarray, shape=(m,)
         Areas, mesh unit squared.
     """
-    return 0.5 * np.sqrt(np.square(_face_crosses(mesh.vertices, mesh.faces)).sum(axis=1))
+    return 0.5 * np.sqrt(np.square(_face_crosses(mesh)).sum(axis=1))
 
 
 def face_normals(mesh: TriangleMesh) -> FloatArray:
@@ -80,7 +81,7 @@ def face_normals(mesh: TriangleMesh) -> FloatArray:
     ndarray, shape=(m, 3)
         Unit normals, zero for faces of zero area.
     """
-    crosses: FloatArray = _face_crosses(mesh.vertices, mesh.faces)
+    crosses = _face_crosses(mesh)
     length = np.sqrt(np.square(crosses).sum(axis=1, keepdims=True))
     return np.divide(crosses, length, out=np.zeros_like(crosses), where=length > 0.0)
 
@@ -100,7 +101,8 @@ def vertex_areas(mesh: TriangleMesh, corners: Corners) -> FloatArray:
     ndarray, shape=(n,)
         Areas, mesh unit squared; 0 where a vertex has no face.
     """
-    areas: FloatArray = _vertex_areas(mesh.vertices, mesh.faces, corners.start, corners.corner)
+    areas = np.empty(len(mesh.vertices))
+    _vertex_areas(mesh.vertices, mesh.faces, corners.start, corners.corner, areas)
     return areas
 
 
@@ -148,9 +150,8 @@ def area_normals(mesh: TriangleMesh, corners: Corners) -> FloatArray:
 
 
 def _normals(mesh: TriangleMesh, corners: Corners, by_area: bool) -> FloatArray:
-    normals: FloatArray = _vertex_normals(
-        mesh.vertices, mesh.faces, corners.start, corners.corner, by_area
-    )
+    normals = np.empty((len(mesh.vertices), 3))
+    _vertex_normals(mesh.vertices, mesh.faces, corners.start, corners.corner, by_area, normals)
     return normals
 
 
@@ -188,15 +189,15 @@ def typical_spacing(mesh: TriangleMesh) -> float:
 
 @compiled(parallel=True)
 def _vertex_corners(
-    faces: IndexArray, vertex_count: int, chunks: int
-) -> tuple[IndexArray, IndexArray]:
+    faces: IndexArray, place: IndexArray, start: IndexArray, corner: IndexArray
+) -> None:
+    """Write the corners; `place` is all zero, with a row for each chunk of faces."""
     face_count = faces.shape[0]
-    place = np.zeros((chunks, vertex_count), np.int32)
+    chunks, vertex_count = place.shape
     for chunk in prange(chunks):
         for face in range(face_count * chunk // chunks, face_count * (chunk + 1) // chunks):
             for j in range(3):
                 place[chunk, faces[face, j]] += 1
-    start = np.empty(vertex_count + 1, np.int32)
     total = 0
     for vertex in range(vertex_count):
         start[vertex] = total
@@ -205,7 +206,6 @@ def _vertex_corners(
             place[chunk, vertex] = total
             total += count
     start[vertex_count] = total
-    corner = np.empty(3 * face_count, np.int32)
     # Chunks are consecutive faces, so the order within a vertex does not depend on their number.
     for chunk in prange(chunks):
         for face in range(face_count * chunk // chunks, face_count * (chunk + 1) // chunks):
@@ -213,12 +213,16 @@ def _vertex_corners(
                 vertex = faces[face, j]
                 corner[place[chunk, vertex]] = 3 * face + j
                 place[chunk, vertex] += 1
-    return start, corner
+
+
+def _face_crosses(mesh: TriangleMesh) -> FloatArray:
+    crosses = np.empty((len(mesh.faces), 3))
+    _write_face_crosses(mesh.vertices, mesh.faces, crosses)
+    return crosses
 
 
 @compiled(parallel=True)
-def _face_crosses(vertices: FloatArray, faces: IndexArray) -> FloatArray:
-    crosses = np.empty((faces.shape[0], 3))
+def _write_face_crosses(vertices: FloatArray, faces: IndexArray, crosses: FloatArray) -> None:
     for face in prange(faces.shape[0]):
         a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
         ux, uy, uz = edge(vertices, a, b)
@@ -226,7 +230,6 @@ def _face_crosses(vertices: FloatArray, faces: IndexArray) -> FloatArray:
         crosses[face, 0] = uy * vz - uz * vy
         crosses[face, 1] = uz * vx - ux * vz
         crosses[face, 2] = ux * vy - uy * vx
-    return crosses
 
 
 @compiled()
@@ -275,9 +278,12 @@ def other_two(faces: IndexArray, corner: int) -> tuple[int, int]:
 
 @compiled(parallel=True)
 def _vertex_areas(
-    vertices: FloatArray, faces: IndexArray, start: IndexArray, corner: IndexArray
-) -> FloatArray:
-    areas = np.empty(len(vertices))
+    vertices: FloatArray,
+    faces: IndexArray,
+    start: IndexArray,
+    corner: IndexArray,
+    areas: FloatArray,
+) -> None:
     for vertex in prange(len(vertices)):
         total = 0.0
         for at in range(start[vertex], start[vertex + 1]):
@@ -287,14 +293,17 @@ def _vertex_areas(
             x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
             total += np.sqrt(x * x + y * y + z * z)
         areas[vertex] = total / 6.0
-    return areas
 
 
 @compiled(parallel=True)
 def _vertex_normals(
-    vertices: FloatArray, faces: IndexArray, start: IndexArray, corner: IndexArray, by_area: bool
-) -> FloatArray:
-    normals = np.empty((len(vertices), 3))
+    vertices: FloatArray,
+    faces: IndexArray,
+    start: IndexArray,
+    corner: IndexArray,
+    by_area: bool,
+    normals: FloatArray,
+) -> None:
     for vertex in prange(len(vertices)):
         nx = ny = nz = 0.0
         largest = mx = my = mz = 0.0
@@ -320,4 +329,3 @@ def _vertex_normals(
         normals[vertex, 0] = nx / length
         normals[vertex, 1] = ny / length
         normals[vertex, 2] = nz / length
-    return normals

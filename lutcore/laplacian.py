@@ -70,7 +70,8 @@ def laplacian(
         Symmetric in the inner product of its masses except for the rows of the rim.
     """
     start, neighbour = neighbours(mesh, corners)
-    rate, rim = _rates(
+    rate, rim = np.empty(len(neighbour), np.float32), np.empty(len(areas), np.bool_)
+    _rates(
         mesh.vertices,
         mesh.faces,
         corners.start,
@@ -79,6 +80,8 @@ def laplacian(
         neighbour,
         areas,
         _ROW_CAP / typical_area,
+        rate,
+        rim,
     )
     # Even meshes stay far below the cap, and the work grows with the root of the bound.
     largest = _relative_to_largest(start, rate)
@@ -88,17 +91,16 @@ def laplacian(
 @compiled(parallel=True)
 def _relative_to_largest(start: IndexArray, rate: NDArray[np.float32]) -> float:
     """Divide the rates by their largest row sum and return that."""
-    total = np.empty(len(start) - 1)
-    for i in prange(len(total)):
+    largest = 0.0
+    for i in prange(len(start) - 1):
         row = 0.0
         for at in range(start[i], start[i + 1]):
             row += rate[at]
-        total[i] = row
-    largest = total.max()
-    for i in prange(len(total)):
+        largest = max(largest, row)
+    for i in prange(len(start) - 1):
         for at in range(start[i], start[i + 1]):
             rate[at] /= largest
-    return float(largest)
+    return largest
 
 
 @compiled()
@@ -119,9 +121,10 @@ def _rates(
     neighbour: IndexArray,
     areas: FloatArray,
     cap: float,
-) -> tuple[NDArray[np.float32], BoolArray]:
-    on_rim = np.empty(len(vertices), np.bool_)
-    rate = np.empty(start[-1], np.float32)
+    rate: NDArray[np.float32],
+    on_rim: BoolArray,
+) -> None:
+    """Write the rates, and which vertices are on the rim."""
     widest = 0
     for vertex in range(len(vertices)):
         widest = max(widest, start[vertex + 1] - start[vertex])
@@ -164,4 +167,3 @@ def _rates(
         mass = max(mass, total / cap)
         for j in range(last - first):
             rate[first + j] = weight[j] / (mass * cap)
-    return rate, on_rim

@@ -97,7 +97,8 @@ def filtered(
         weights[: len(one), column] = one
     # Unsigned: compiled loops need not ask whether an index counts from the end.
     links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
-    before = _apply(*links, fields, 0.5)
+    before = np.empty((len(fields), FIELDS), np.float32)
+    _apply(*links, fields, 0.5, before)
     change = np.empty((len(series), len(before), FIELDS), np.float32)
     now = np.zeros_like(before)
     _step(*links, before, now, np.float32(0.5))
@@ -266,9 +267,13 @@ def _begin(
 
 @compiled(parallel=True)
 def _apply(
-    start: _Unsigned, neighbour: _Unsigned, rate: SingleArray, f: FloatArray, factor: float
-) -> SingleArray:
-    out = np.empty(f.shape, np.float32)
+    start: _Unsigned,
+    neighbour: _Unsigned,
+    rate: SingleArray,
+    f: FloatArray,
+    factor: float,
+    out: SingleArray,
+) -> None:
     for i in prange(len(start) - 1):
         s0 = s1 = s2 = s3 = s4 = s5 = 0.0
         for at in range(start[i], start[i + 1]):
@@ -281,7 +286,6 @@ def _apply(
             s5 += w * (f[i, 5] - f[j, 5])
         out[i, 0], out[i, 1], out[i, 2] = s0, s1, s2
         out[i, 3], out[i, 4], out[i, 5] = s3, s4, s5
-    return out
 
 
 @compiled(parallel=True, packed=True)

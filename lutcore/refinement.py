@@ -39,19 +39,18 @@ def refined(
     square : ndarray, shape=(n,)
         Squared error bars; what the smoothing cannot vouch for is added.
     """
-    space = _in_space(normals, tensors)
+    space = np.empty((len(normals), 6))
+    _in_space(normals, tensors, space)
     change = low_pass(on.operator, space, [_SCALE * on.spacing])
     _apply(normals, space, change, used, on.spacing, tensors, square)
 
 
 @compiled(parallel=True)
-def _in_space(normals: FloatArray, tensors: FloatArray) -> FloatArray:
-    space = np.empty((len(normals), 6))
+def _in_space(normals: FloatArray, tensors: FloatArray, space: FloatArray) -> None:
     for i in prange(len(normals)):
         xx, xy, xz, yy, yz, zz = in_space(normals[i], tensors[i])
         space[i, 0], space[i, 1], space[i, 2] = xx, xy, xz
         space[i, 3], space[i, 4], space[i, 5] = yy, yz, zz
-    return space
 
 
 @compiled(parallel=True)

@@ -29,10 +29,13 @@ def neighbours(mesh: TriangleMesh, corners: Corners) -> tuple[IndexArray, IndexA
     neighbour : ndarray of int32, shape=(e,)
         The vertices that share an edge with each vertex, once each.
     """
-    ring, count = _rings(mesh.faces, corners.start, corners.corner)
-    start = np.zeros(len(count) + 1, np.int32)
-    np.cumsum(count, out=start[1:])
-    return start, _joined(ring, corners.start, start)
+    ring = np.empty(2 * len(corners.corner), np.int32)
+    start = np.zeros(len(corners.start), np.int32)
+    _rings(mesh.faces, corners.start, corners.corner, ring, start[1:])
+    np.cumsum(start, out=start)
+    neighbour = np.empty(start[-1], np.int32)
+    _joined(ring, corners.start, start, neighbour)
+    return start, neighbour
 
 
 @compiled()
@@ -69,13 +72,10 @@ def slot_of(neighbour: IndexArray, first: int, last: int, other: int) -> int:
 
 @compiled(parallel=True)
 def _rings(
-    faces: IndexArray, start: IndexArray, corner: IndexArray
-) -> tuple[IndexArray, IndexArray]:
-    """Return each vertex's neighbours, once each, from ``ring[2 * start[vertex]]`` on."""
-    vertex_count = len(start) - 1
-    ring = np.empty(2 * len(corner), np.int32)
-    count = np.empty(vertex_count, np.int32)
-    for vertex in prange(vertex_count):
+    faces: IndexArray, start: IndexArray, corner: IndexArray, ring: IndexArray, count: IndexArray
+) -> None:
+    """Write each vertex's neighbours, once each, from ``ring[2 * start[vertex]]`` on."""
+    for vertex in prange(len(count)):
         base = 2 * start[vertex]
         corners = start[vertex + 1] - start[vertex]
         found = 0
@@ -95,7 +95,6 @@ def _rings(
         elif found > _SMALL:
             ring[base : base + found].sort()
         count[vertex] = found
-    return ring, count
 
 
 @compiled()
@@ -111,10 +110,10 @@ def _distinct(values: IndexArray) -> int:
 
 
 @compiled(parallel=True)
-def _joined(ring: IndexArray, corner_start: IndexArray, start: IndexArray) -> IndexArray:
-    neighbour = np.empty(start[-1], np.int32)
+def _joined(
+    ring: IndexArray, corner_start: IndexArray, start: IndexArray, neighbour: IndexArray
+) -> None:
     for vertex in prange(len(start) - 1):
         first = 2 * corner_start[vertex]
         for slot in range(start[vertex + 1] - start[vertex]):
             neighbour[start[vertex] + slot] = ring[first + slot]
-    return neighbour

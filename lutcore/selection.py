@@ -135,9 +135,10 @@ def select(
     used[jets] = jet_radius(on)
     tell(progress, 0.9, "principal directions")
     facets = np.where(rim, _FACETS_AT_RIM, _FACETS)
-    k, directions, error = _principal(
-        smoothed.normals, tensors, square, tilt_correction(on, smoothed), facets * on.spacing**2
-    )
+    k, directions = np.empty((2, len(used))), np.empty((2, len(used), 3))
+    error, tilt = np.empty(len(used)), tilt_correction(on, smoothed)
+    given = smoothed.normals, tensors, square, tilt, facets * on.spacing**2
+    _principal(*given, k, directions, error)
     return PrincipalCurvatures(
         k[0], k[1], directions[0], directions[1], smoothed.normals, error, used, lean=lean
     )
@@ -173,7 +174,9 @@ def _chosen(
     wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
     if lengths is not None:
         wanted[:] = lengths
-    mixed = _mix(
+    vertices = len(on.fields)
+    mixed = np.empty((vertices, 3)), *np.empty((4, vertices))
+    _mix(
         smoothed.tensors,
         smoothed.stretch,
         *found,
@@ -182,6 +185,7 @@ def _chosen(
         precision * precision * _typical_square(smoothed),
         steadiness,
         1.0 / on.spacing,
+        *mixed,
     )
     return *mixed, found
 
@@ -208,17 +212,17 @@ def _mix(
     floor: float,
     steadiness: float,
     unknown: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return tensors, squared error bars, those with noise counted by `steadiness`, scales, lean.
+    mixed: FloatArray,
+    square: FloatArray,
+    cost: FloatArray,
+    used: FloatArray,
+    leaning: FloatArray,
+) -> None:
+    """Write tensors, squared error bars, those with noise counted by `steadiness`, scales, lean.
 
     The scale is -1 where every star has closed. For the lean see `PrincipalCurvatures`.
     """
     vertices, count = energy.shape
-    mixed = np.zeros((vertices, 3))
-    square = np.empty(vertices)
-    cost = np.empty(vertices)
-    used = np.empty(vertices)
-    leaning = np.zeros(vertices)
     last = count - 1
     for i in prange(vertices):
         typical, rest = np.empty(count), np.empty(count)
@@ -263,7 +267,8 @@ def _mix(
                 errors[j] = steady[j] = np.inf
             costs[j] = max(steady[j], floor) * _DEARER**j
             best = min(best, costs[j])
-        total = square[i] = cost[i] = used[i] = 0.0
+        total = square[i] = cost[i] = used[i] = leaning[i] = 0.0
+        mixed[i, 0] = mixed[i, 1] = mixed[i, 2] = 0.0
         for j in range(count):
             if wanted[i] == 0.0:
                 weight = (best / costs[j]) ** _SHARPNESS
@@ -294,7 +299,6 @@ def _mix(
                 mixed[i, entry] = tensors[i, 0, entry]
             # Nothing tells a flat speck from a curved one of the same size.
             square[i] = cost[i] = energy[i, 0] + _square(tensors[i, 0]) + unknown * unknown
-    return mixed, square, cost, used, leaning
 
 
 @compiled()
@@ -320,15 +324,18 @@ def _share_of(scales: FloatArray, j: int, length: float) -> float:
 
 @compiled(parallel=True)
 def _principal(
-    normals: FloatArray, tensors: FloatArray, square: FloatArray, factor: float, facets: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    k = np.empty((2, len(normals)))
-    directions = np.empty((2, len(normals), 3))
-    error = np.empty(len(normals))
+    normals: FloatArray,
+    tensors: FloatArray,
+    square: FloatArray,
+    factor: float,
+    facets: FloatArray,
+    k: FloatArray,
+    directions: FloatArray,
+    error: FloatArray,
+) -> None:
     for i in prange(len(normals)):
         n = (normals[i, 0], normals[i, 1], normals[i, 2])
         tensor = (factor * tensors[i, 0], factor * tensors[i, 1], factor * tensors[i, 2])
         write_principal(i, n, tensor, k, directions)
         size = 0.5 * (k[0, i] * k[0, i] + k[1, i] * k[1, i])
         error[i] = np.sqrt(factor * factor * square[i] + facets[i] ** 2 * size**3)
-    return k, directions, error

@@ -46,15 +46,20 @@ def stars(mesh: TriangleMesh, corners: Corners) -> Stars:
     Stars
         Areas, positions, normals.
     """
-    return Stars(*_stars(mesh.vertices, mesh.faces, corners.start, corners.corner))
+    areas, fields = np.empty(len(mesh.vertices)), np.empty((len(mesh.vertices), 6))
+    _stars(mesh.vertices, mesh.faces, corners.start, corners.corner, areas, fields)
+    return Stars(areas, fields)
 
 
 @compiled(parallel=True)
 def _stars(
-    vertices: FloatArray, faces: IndexArray, start: IndexArray, corner: IndexArray
-) -> tuple[FloatArray, FloatArray]:
-    areas = np.empty(len(vertices))
-    fields = np.empty((len(vertices), 6))
+    vertices: FloatArray,
+    faces: IndexArray,
+    start: IndexArray,
+    corner: IndexArray,
+    areas: FloatArray,
+    fields: FloatArray,
+) -> None:
     for vertex in prange(len(vertices)):
         total = px = py = pz = nx = ny = nz = 0.0
         largest = mx = my = mz = 0.0
@@ -85,4 +90,3 @@ def _stars(
         fields[vertex, 3] = nx
         fields[vertex, 4] = ny
         fields[vertex, 5] = nz
-    return areas, fields

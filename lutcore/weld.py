@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import prange
+from numpy.typing import NDArray
 
 from lutcore.arrays import AnyArray, BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
@@ -119,8 +120,11 @@ def _chained(first: Welded, second: Welded) -> Welded:
 
 def _merged(mesh: TriangleMesh) -> tuple[Welded, float]:
     """Merge once; also return the least height of a triangle that is left."""
-    same = _first_of_same(mesh.vertices)
-    good, used, lowest = _good_faces(mesh.vertices, mesh.faces, same)
+    same = np.empty(len(mesh.vertices), np.int32)
+    bits = max(4, (2 * len(same) - 1).bit_length())
+    _first_of_same(mesh.vertices, np.zeros(1 << bits, np.uint64), same)
+    good, used = np.empty(len(mesh.faces), np.bool_), np.zeros(len(same), np.bool_)
+    lowest = _good_faces(mesh.vertices, mesh.faces, same, good, used)
     kept = int(np.count_nonzero(used))
     if kept == 0:
         return Welded(None, np.full(len(mesh.vertices), -1, np.int32), True), lowest
@@ -138,40 +142,38 @@ def _merged(mesh: TriangleMesh) -> tuple[Welded, float]:
         faces = index[mesh.faces]
     if not good.all():
         faces = faces[good]
-    ready = TriangleMesh.trusted(_centred(points), faces)
+    centred = np.empty_like(points)
+    _centre(points, centred)
+    ready = TriangleMesh.trusted(centred, faces)
     return Welded(ready, index, kept != len(used)), lowest
 
 
 @compiled(parallel=True)
-def _centred(points: FloatArray) -> FloatArray:
-    """Return the points relative to the middle of the box around them."""
+def _centre(points: FloatArray, out: FloatArray) -> None:
+    """Write the points relative to the middle of the box around them."""
     middle = np.empty(3)
     for axis in prange(3):
         low = high = points[0, axis]
         for i in range(len(points)):
             low, high = min(low, points[i, axis]), max(high, points[i, axis])
         middle[axis] = 0.5 * (low + high)
-    out = np.empty_like(points)
     for i in prange(len(points)):
         for axis in range(3):
             out[i, axis] = points[i, axis] - middle[axis]
-    return out
 
 
 @compiled()
-def _first_of_same(vertices: FloatArray) -> IndexArray:
-    """Return for each vertex the first vertex with the same position, by open addressing."""
+def _first_of_same(vertices: FloatArray, table: NDArray[np.uint64], first: IndexArray) -> None:
+    """Write for each vertex the first vertex with the same position, by open addressing.
+
+    The table is empty, as long as a power of two, and twice as long as there are vertices.
+    """
     count = len(vertices)
-    bits = 4
-    while (1 << bits) < 2 * count:
-        bits += 1
-    mask = np.uint64((1 << bits) - 1)
+    mask = np.uint64(len(table) - 1)
     # A slot holds vertex + 1 and, above it, 32 bits of the hash: most unlike vertices are told
     # apart without looking at their positions.
-    table = np.zeros(1 << bits, np.uint64)
     words = vertices.view(np.uint64)
     sign = np.uint64(1 << 63)
-    first = np.empty(count, np.int32)
     for vertex in range(count):
         code = np.uint64(0)
         for axis in range(3):
@@ -198,7 +200,6 @@ def _first_of_same(vertices: FloatArray) -> IndexArray:
                     first[vertex] = other
                     break
             slot = (slot + np.uint64(1)) & mask
-    return first
 
 
 @compiled()
@@ -233,18 +234,16 @@ def _height(vertices: FloatArray, a: int, b: int, c: int) -> float:
 
 @compiled(parallel=True)
 def _good_faces(
-    vertices: FloatArray, faces: IndexArray, same: IndexArray
-) -> tuple[BoolArray, BoolArray, float]:
-    """Return which faces have an area, which vertices those use, and the least of their heights."""
+    vertices: FloatArray, faces: IndexArray, same: IndexArray, good: BoolArray, used: BoolArray
+) -> float:
+    """Write which faces have an area, which vertices those use; return their least height."""
     lowest = np.inf
-    good = np.empty(len(faces), np.bool_)
     for face in prange(len(faces)):
         height = _height(vertices, same[faces[face, 0]], same[faces[face, 1]], same[faces[face, 2]])
         good[face] = height > 0.0
         lowest = min(lowest, height if height > 0.0 else np.inf)
-    used = np.zeros(len(vertices), np.bool_)
     for face in range(len(faces)):
         if good[face]:
             for j in range(3):
                 used[same[faces[face, j]]] = True
-    return good, used, lowest
+    return lowest
