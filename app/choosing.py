@@ -78,7 +78,7 @@ def needs(
         If its progress asked to stop.
     """
     costs = measured(pipeline.progress, again)
-    inputs = pipeline.inputs(session, axes)
+    inputs = pipeline.shadowed(session, axes)
     choice = choose(inputs, tolerance, costs, checked=checked)
     mesh = pipeline.subject(session).mesh
     shadows = None
