@@ -5,6 +5,8 @@ import pytest
 from msgspec.structs import replace
 
 from app import costs as costs_file
+from app.animation import stage
+from app.animation_motion import Motion
 from app.camera import axes, camera_of
 from app.cli.main import main
 from app.pipeline import Pipeline
@@ -145,6 +147,22 @@ def test_shadows_make_another_scene():
         for shadows in ("off", "on", "auto")
     }
     assert len(set(found.values())) == 3
+
+
+def test_a_film_is_shaded_with_what_its_session_says():
+    auto = Method("auto", {"check": "none"})
+    session = Session(
+        mesh="sample:torus",
+        mm_per_unit=1000.0,
+        model=auto,
+        shadows="auto",
+        lights=(Directional((0.3, 0.9, 0.2), frame="world"),),
+    )
+    kept = recorded(session, Pipeline(), AXES)
+    another_machine()
+    motion = Motion("turntable", 0.5, 4.0)
+    assert stage(kept, Pipeline(), motion).session.model == kept.settled[0].method
+    assert stage(session, Pipeline(), motion).session.model != kept.settled[0].method
 
 
 def test_pictures_and_session_files_carry_it_to_another_machine(tmp_path, capsys):
