@@ -132,7 +132,6 @@ class CurvelightAccessor:
             If a name or a value is not accepted.
         """
         from app.costs import measured
-        from lutcore.baking import bake
         from lutcore.detail import detail_seen
         from lutcore.estimation import principal_curvatures
         from lutcore.parameters import create
@@ -145,7 +144,6 @@ class CurvelightAccessor:
         if per_unit <= 0.0:
             raise ParameterError(f"mm_per_unit = {mm_per_unit!r} must be above 0")
         plugin = create(model_registry.get(model), f"shading model {model!r}", parameters)
-        table = bake(material, profile=profile)
         detail = None
         if scale is None and method == "auto":
             detail = detail_seen(mesh, material, per_unit, profile=profile)
@@ -157,12 +155,9 @@ class CurvelightAccessor:
         inputs = shading_inputs(
             mesh, curvatures, material, chosen, per_unit, profile=profile, detail=detail
         )
-        settled = plugin.settled(inputs)
         if shadows != "off" and len(inputs.lights):
-            glow = table.mean_free_path * table.psi[:, 0] / per_unit
-            shares = _shares(mesh, inputs, shadows, glow if settled.local else None)
-            inputs = replace(inputs, visibility=shares)
-        light = exitance(settled, inputs)
+            inputs = _shadowed(mesh, inputs, shadows, plugin.local)
+        light = exitance(plugin, inputs)
         factor = auto_exposure(light) if exposure is None else exposure
         return self._with(export.shading_arrays(light, factor))
 
@@ -177,19 +172,21 @@ class CurvelightAccessor:
         return result
 
 
-def _shares(
-    mesh: TriangleMesh, inputs: "ShadingInputs", shadows: Shadows, glow: FloatArray | None
-) -> FloatArray | None:
-    """Return which lights reach which vertices, softened by `glow` where a model is local."""
+def _shadowed(
+    mesh: TriangleMesh, inputs: "ShadingInputs", shadows: Shadows, local: bool
+) -> "ShadingInputs":
+    """Return the scene with the lights that reach each vertex, softened if a model may be local."""
     from lutcore.visibility import forecast, softened, visibility
 
     # As `app.steps.visibility`, which keeps each step.
     assert inputs.curvatures is not None
     normals = inputs.curvatures.normals
     if shadows == "auto" and not forecast(mesh, normals, inputs.lights).needed:
-        return None
+        return inputs
     seen = visibility(mesh, inputs.lights)
-    return seen if glow is None else softened(seen, mesh, glow)
+    table = inputs.table
+    glow = table.mean_free_path * table.psi[:, 0] / inputs.mm_per_unit
+    return replace(inputs, visibility=seen, softened=softened(seen, mesh, glow) if local else None)
 
 
 def _default_lights() -> list[Light]:

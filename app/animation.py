@@ -207,11 +207,12 @@ def palette_frames(scene: Scene, pipeline: Pipeline) -> Iterator[Image]:
 
 def _decided(session: Session, pipeline: Pipeline, camera: Camera) -> Session:
     """Decide once what would else be decided anew, and flicker, in each frame."""
-    if session.shadows == "auto":
-        session = replace(session, shadows="on")
     if session.model.name == AUTO and session.view != "compare":
+        # Before shadows are: what the session says of its scene is said of it as it was asked for.
         chosen = settled(pipeline.settled(session, session.model, cameras.axes(camera)))
         session = replace(session, model=chosen.method)
+    if session.shadows == "auto":
+        session = replace(session, shadows="on")
     return session
 
 

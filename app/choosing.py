@@ -23,7 +23,9 @@ class Needs:
     choice : Choice
         The model, with the ladder and the size of its table.
     shadows : ShadowForecast or None
-        What cast shadows would change; None without lights.
+        What cast shadows would change, by which `auto` casts them: the same for all models and
+        tolerances, so that what is compared has the same; None without lights. What leaving them
+        out does to the model is in `choice`.
     scale : float or None
         Length that curvature is averaged over, mesh units; None where the estimator chooses.
     glow : float
@@ -78,7 +80,7 @@ def needs(
         If its progress asked to stop.
     """
     costs = measured(pipeline.progress, again)
-    inputs = pipeline.inputs(session, axes)
+    inputs = pipeline.shadowed(session, axes)
     choice = choose(inputs, tolerance, costs, checked=checked)
     mesh = pipeline.subject(session).mesh
     shadows = None

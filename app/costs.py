@@ -79,10 +79,11 @@ def known() -> bool:
     bool
         False if `measured` would take a while.
     """
-    from lutcore.costs import PREDICTION, candidates
+    from lutcore.costs import COLORS, PREDICTION, candidates
 
     kept = _read(place(), machine())
-    return all(label in kept for label in (*(one.label for one in candidates()), PREDICTION))
+    labels = (*(one.label for one in candidates()), PREDICTION, COLORS)
+    return all(label in kept for label in labels)
 
 
 def in_child() -> dict[str, AnyArray]:

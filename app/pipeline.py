@@ -62,7 +62,7 @@ class Pipeline(Scenes):
         curved = settled.curved or not settled.local
         inputs = self.inputs(session, axes, curved)
         shares = self.visibility(session, settled.local, world_lights(session, axes))
-        if not settled.local or len(inputs.lights) == 0:
+        if not settled.local or settled.joint or len(inputs.lights) == 0:
             return exitance(settled, replace(inputs, visibility=shares))
 
         surface = self.surface_key(session)
@@ -111,7 +111,7 @@ class Pipeline(Scenes):
         Parameters
         ----------
         session : Session
-            Everything but its own model and shadows is used.
+            Everything but its own model is used.
         model : Method
             The shading model.
         axes : ndarray, shape=(3, 3)
@@ -136,7 +136,7 @@ class Pipeline(Scenes):
         if plugin.settled is ShadingModel.settled:
             return chosen
         if model.name != AUTO:
-            return chosen.settled(self.inputs(session, axes))
+            return chosen.settled(self.shadowed(session, axes))
         from app.costs import measured
         from app.settling import model_of, taken
 
@@ -144,5 +144,5 @@ class Pipeline(Scenes):
         if said is not None:
             return model_of(said)
         measured(self.progress)  # once on this machine, not in each process
-        key = ("settled", *self.scene_key(session, model, axes))
-        return self.once(key, lambda: chosen.settled(self.inputs(session, axes)))
+        key = ("settled", session.shadows, *self.scene_key(session, model, axes))
+        return self.once(key, lambda: chosen.settled(self.shadowed(session, axes)))

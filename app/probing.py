@@ -178,9 +178,8 @@ def with_readings(
     """
     from app.camera import axes
     from lutcore.blend import at
-    from lutcore.parameters import create
     from lutcore.prediction import Scene
-    from lutcore.shading import exitance, model_registry, shading_models
+    from lutcore.shading import exitance, shading_models
     from lutcore.tolerance import relative
 
     frame = axes(camera)
@@ -194,11 +193,11 @@ def with_readings(
     others = [Method(name) for name in shading_models() if name != session.model.name]
     readings = []
     for method in (session.model, *others):
-        model = create(model_registry.get(method.name), method.name, dict(method.parameters))
-        model = model.settled(inputs)
+        model = pipeline.settled(session, method, frame)
         if not model.local:
             continue
-        light = exitance(model, here)
+        # A blend knows from the whole mesh what it is at a vertex.
+        light = exitance(model, inputs)[chosen] if model.joint else exitance(model, here)
         errors = model.predicted_error(scene)
         error = None if errors is None else float(relative(errors, irradiance)[0])
         readings.append(_reading(method, light, light * seen, exposure, error))

@@ -111,18 +111,22 @@ class Settled(_Part, frozen=True):
     """What the shading model ``auto`` came to in a scene; see `app.settling`.
 
     `scene` tells one scene from another, empty for any; `method` is the model, `cheaper` the one
-    that takes its place where its predicted error is below `limit`.
+    that takes its place where its predicted error is below `limit`: relative, or a CIEDE2000 of
+    light that is shown under `exposure`.
     """
 
     method: Method
     cheaper: Method | None = None
     limit: Positive | None = None
+    exposure: Positive | None = None
     scene: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.cheaper is None) != (self.limit is None):
             raise ValueError("a cheaper model and its limit are given together")
+        if self.cheaper is None and self.exposure is not None:
+            raise ValueError("an exposure is given with a cheaper model")
 
     @property
     def label(self) -> str:

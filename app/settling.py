@@ -35,7 +35,7 @@ def settled(model: ShadingModel) -> Settled:
         Its name, with the parameters that are not at their default.
     """
     if isinstance(model, Blend):
-        return Settled(_method(model.good), _method(model.cheap), model.limit)
+        return Settled(_method(model.good), _method(model.cheap), model.limit, model.exposure)
     return Settled(_method(model))
 
 
@@ -60,7 +60,7 @@ def model_of(one: Settled) -> ShadingModel:
     good = _created(one.method)
     if one.cheaper is None or one.limit is None:
         return good
-    return Blend(_created(one.cheaper), good, one.limit)
+    return Blend(_created(one.cheaper), good, one.limit, one.exposure)
 
 
 def taken(
@@ -124,7 +124,7 @@ def recorded(session: Session, pipeline: "Pipeline", axes: FloatArray) -> Sessio
 def _scene(session: Session, pipeline: "Pipeline", model: Method, axes: FloatArray) -> str:
     """Return what tells a scene from others on every machine, as a short hash."""
     moving = any(isinstance(one, Directional) and one.frame == "camera" for one in session.lights)
-    parts = (
+    parts: tuple[object, ...] = (
         pipeline.subject(session).loaded.digest,
         session.volume,
         session.repairs,
@@ -138,6 +138,8 @@ def _scene(session: Session, pipeline: "Pipeline", model: Method, axes: FloatArr
         # + 0.0 makes -0.0 the same.
         (np.round(axes, _DIGITS) + 0.0).tolist() if moving else None,
     )
+    if session.shadows != "off":  # what was recorded without them holds
+        parts = (*parts, session.shadows)
     text = msgspec.json.encode(parts, order="sorted")
     return hashlib.sha256(text).hexdigest()[:16]
 

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray
+from lutcore.color_bound import color_bound
 from lutcore.errors import ParameterError
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel
+from lutcore.shading import ShadingInputs, ShadingModel, exitance
 from lutcore.tolerance import relative
 
 # The blend begins where the predicted error is this share of the tolerance.
@@ -24,53 +25,97 @@ class Blend(ShadingModel):
     predicted error with its slope, so that there is no line where the model changes. The error is
     at most (1 - w) e_cheap + w e_good, never more than the limit where e_good is not; what the
     change of w alone adds to the picture between two vertices is at most |dw| (e_cheap + e_good).
+    The error is that under all lights together, without cast shadows: they take light and with it
+    the error of spreading it.
 
-    Tolerances of colour have no blend: what an error does to a colour takes eight CIEDE2000
-    differences at each vertex, 5 to 10 us, and the costliest local model takes 1.5 us.
+    In CIEDE2000 the error is bounded at the colour that the cheaper model itself gives
+    (`lutcore.color_bound`), which is continuous as well. The exposure is a part of the blend: one
+    that followed the picture would make each vertex depend on all others, and change where the
+    models meet whenever a light, or a machine's last bit, changes.
 
     Parameters
     ----------
     cheap, good : ShadingModel
         Local models; `cheap` must have a predicted error.
     limit : float
-        Relative error at which `cheap` is no longer used; see `lutcore.tolerance.relative`.
+        Error at which `cheap` is no longer used: relative, see `lutcore.tolerance.relative`, or in
+        CIEDE2000.
+    exposure : float or None
+        For a limit in CIEDE2000, the factor that linear light is shown with; None if it is
+        relative.
     """
 
+    joint: ClassVar[bool] = True
     curved: ClassVar[bool] = True
 
     cheap: ShadingModel
     good: ShadingModel
     limit: float
+    exposure: float | None = None
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         if inputs.curvatures is None:
             raise ParameterError("a blend needs the curvatures, to predict errors from")
-        weight = self.weights(Scene.of(inputs, inputs.curvatures))
+        scene = Scene.of(inputs, inputs.curvatures)
         out = np.zeros(inputs.points.shape)
-        for model, share in ((self.cheap, 1.0 - weight), (self.good, weight)):
-            chosen = np.flatnonzero(share)
-            given: FloatArray = model.shade(at(inputs, chosen))
-            out[chosen] += share[chosen, None] * given
+        if self.exposure is None:
+            weight = self.weights(scene)
+            cheap = np.flatnonzero(weight < 1.0)
+            out[cheap] = exitance(self.cheap, at(inputs, cheap))
+        else:
+            out = exitance(self.cheap, inputs)
+            weight = self.weights(scene, out)
+        out *= (1.0 - weight)[:, None]
+        good = np.flatnonzero(weight)
+        out[good] += weight[good, None] * exitance(self.good, at(inputs, good))
         return out
 
-    def weights(self, scene: Scene) -> FloatArray:
+    def weights(self, scene: Scene, given: FloatArray | None = None) -> FloatArray:
         """Return the share of the better model.
 
         Parameters
         ----------
         scene : Scene
             The vertices.
+        given : ndarray, shape=(n, 3), optional
+            What the cheaper model gives there, for a limit in CIEDE2000.
 
         Returns
         -------
         ndarray, shape=(n,)
             0 to 1.
         """
+        return blending(self.errors(scene, given), self.limit)
+
+    def errors(self, scene: Scene, given: FloatArray | None = None) -> FloatArray:
+        """Return the predicted errors of the cheaper model in the limit's unit.
+
+        Parameters
+        ----------
+        scene : Scene
+            The vertices.
+        given : ndarray, shape=(n, 3), optional
+            What the cheaper model gives there, for a limit in CIEDE2000.
+
+        Returns
+        -------
+        ndarray, shape=(n,)
+            0 or more.
+
+        Raises
+        ------
+        ParameterError
+            If the model predicts no error, or colours are asked for without `given`.
+        """
         errors = self.cheap.predicted_error(scene)
         if errors is None:
             raise ParameterError("a blend needs a model whose error can be predicted")
-        return blending(relative(errors, scene.irradiance), self.limit)
+        if self.exposure is None:
+            return relative(errors, scene.irradiance)
+        if given is None:
+            raise ParameterError("a blend by colour needs what the cheaper model gives")
+        return color_bound(given, errors, scene.table.total, self.exposure)
 
 
 def blending(errors: FloatArray, limit: float) -> FloatArray:
@@ -79,7 +124,7 @@ def blending(errors: FloatArray, limit: float) -> FloatArray:
     Parameters
     ----------
     errors : ndarray, shape=(n,)
-        Relative errors.
+        Its errors, in the limit's unit.
     limit : float
         Where the cheaper one ends.
 
@@ -105,9 +150,9 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
     Returns
     -------
     ShadingInputs
-        Of m vertices, without visibility.
+        Of m vertices, without curvatures.
     """
-    detail = inputs.detail
+    detail, seen, soft = inputs.detail, inputs.visibility, inputs.softened
     if detail is not None:
         detail = replace(
             detail,
@@ -120,7 +165,8 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
         points=inputs.points[chosen],
         normals=inputs.normals[chosen],
         shape=inputs.shape[chosen],
-        visibility=None,
+        visibility=None if seen is None else seen[:, chosen],
+        softened=None if soft is None else soft[:, chosen],
         curvatures=None,
         detail=detail,
     )

@@ -84,13 +84,15 @@ class Coverage:
 class Check:
     """Checks models against light gathered at a few vertices.
 
-    Cast shadows are on neither side. Vertices near borders are left out, because the gathered light
-    is no truth there; see `lutcore.open_mesh`.
+    Where the scene has visibility, cast shadows are on both sides: the light that enters is what
+    they leave of it, and a local model gets them as pictures give it. So what is found includes the
+    error of softening them. Vertices near borders are left out, because the gathered light is no
+    truth there; see `lutcore.open_mesh`.
 
     Parameters
     ----------
     inputs : ShadingInputs
-        The scene, without visibility.
+        The scene, with visibility where something casts a shadow.
     tolerance : Tolerance
         How wrong a model may be.
     irradiance : ndarray, shape=(3,)
@@ -176,6 +178,12 @@ class Check:
             See `lutcore.blend.at`.
         """
         return at(self._inputs, vertices)
+
+    @property
+    def exposure(self) -> float:
+        """The exposure that suits the truth at the first stage's vertices."""
+        self._truth_of(0)
+        return self._exposure
 
     def _errors(self, given: FloatArray, stage: int) -> FloatArray:
         truth = self._truth_of(stage)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lutcore.blend import Blend
-from lutcore.checking import Coverage
+from lutcore.checking import Checked, Coverage
 from lutcore.costs import Candidate, Cost, candidates
 from lutcore.errors import ParameterError
 from lutcore.judging import Judge, Rung
-from lutcore.shading import ShadingInputs, ShadingModel
+from lutcore.mixing import mixed
+from lutcore.shading import ShadingInputs, ShadingModel, without_shadows
 from lutcore.table_size import samples_needed, with_samples
 from lutcore.tolerance import Tolerance
 
@@ -43,6 +44,12 @@ class Choice:
         What the check took, once.
     enough : float or None
         Where no local model suffices, how many times as large the body must be for one.
+    shadowed : bool
+        Whether something casts a shadow: it is then on both sides of the check, and in no
+        prediction.
+    unshadowed : Checked or None
+        How wrong what is chosen would be without cast shadows; None where there are none, nothing
+        was checked, or it gathers.
     """
 
     rungs: tuple[Rung, ...]
@@ -56,6 +63,8 @@ class Choice:
     coverage: Coverage
     check_milliseconds: float
     enough: float | None
+    shadowed: bool
+    unshadowed: Checked | None
 
     @property
     def model(self) -> ShadingModel:
@@ -92,12 +101,13 @@ def choose(
     tolerance at a confidence of 99 %; where nothing can be checked, because there is no light or
     nothing of the mesh is far enough from its borders, if what is predicted is. Models that predict
     no error are listed and never chosen. Without lights the error is that under the worst one.
-    Shadows are left out.
+    Cast shadows are in the check where the scene has visibility, and in no prediction.
 
     Parameters
     ----------
     inputs : ShadingInputs
-        The scene, with its curvatures.
+        The scene, with its curvatures, and with visibility where something casts a shadow:
+        `softened` for local models, as it is for what gathers.
     tolerance : Tolerance
         How wrong it may be.
     costs : mapping of str to Cost
@@ -129,6 +139,7 @@ def choose(
         raise ParameterError("choosing a model needs the curvatures, to predict errors from")
     if tolerance.metric != "relative" and not len(inputs.lights):
         raise ParameterError(f"{tolerance.metric} needs a light: without one there is no colour")
+    inputs = _cast(inputs)
     samples = samples_needed(inputs, tolerance)
     judge = Judge(inputs, tolerance, costs, samples, seed, checked)
     every = candidates() if models is None else models
@@ -144,10 +155,11 @@ def choose(
     chosen = adequate[0] if adequate else min(known, key=lambda rung: rung.best_score)
     predicted = [rung for rung in known if rung.predicted]
     by_prediction = predicted[0] if predicted else min(known, key=lambda rung: rung.score)
-    blend, cheaper, spent = judge.blended(chosen, known)
+    blend, cheaper, spent = mixed(judge, chosen, known)
     enough = None
     if whole and not any(rung.candidate.model.local for rung in adequate):
         enough = judge.enough([rung.candidate for rung in known])
+    model = blend or with_samples(chosen.candidate.model, samples)
     return Choice(
         rungs=tuple(rungs),
         chosen=chosen,
@@ -160,4 +172,14 @@ def choose(
         coverage=judge.coverage,
         check_milliseconds=1e3 * judge.seconds,
         enough=enough,
+        shadowed=inputs.visibility is not None,
+        unshadowed=judge.unshadowed(model) if whole else None,
     )
+
+
+def _cast(inputs: ShadingInputs) -> ShadingInputs:
+    """Return the scene without visibility if every light reaches everything."""
+    seen = inputs.visibility
+    if seen is not None and seen.min(initial=1.0) == 1.0:
+        return without_shadows(inputs)
+    return inputs

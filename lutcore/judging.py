@@ -6,11 +6,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lutcore.arrays import AnyArray, FloatArray
-from lutcore.blend import Blend, at
+from lutcore.blend import at
 from lutcore.checking import Check, Checked, Coverage
-from lutcore.costs import PREDICTION, Candidate, Cost
+from lutcore.color import auto_exposure
+from lutcore.costs import Candidate, Cost
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel, exitance, model_registry
+from lutcore.shading import (
+    ShadingInputs,
+    ShadingModel,
+    exitance,
+    model_registry,
+    without_shadows,
+)
 from lutcore.table_size import with_samples
 from lutcore.tolerance import Tolerance, color_differences, relative
 
@@ -19,8 +26,6 @@ NOT_ASKED = "no check was asked for"
 _SAMPLE = 2048
 _COLORS = 1024
 _COLORED_BY = "curvature-lut"
-# A blend must save this share of the cost to be worth two models.
-_WORTH = 0.1
 # Sizes of the body that are tried where no local model suffices.
 _LARGER = 2.0 ** (0.5 * np.arange(1, 15))
 
@@ -112,7 +117,7 @@ class Judge:
             seen.sort()
         whole = Scene.of(inputs, inputs.curvatures)
         self.scene, self.irradiance = whole.at(seen), whole.irradiance
-        self.some = replace(at(inputs, seen), detail=None)
+        self.some = at(inputs, seen)
         self.base: FloatArray | None = None
         self.check: Check | None = None
         self.coverage, self._spent = Coverage(0.0, NOT_ASKED), 0.0
@@ -184,6 +189,11 @@ class Judge:
         check, sized = self.check, with_samples(model, self.samples)
         return check(lambda vertices: exitance(sized, check.inputs_at(vertices)))
 
+    @property
+    def exposure(self) -> float:
+        """The exposure that suits the scene: of the truth where it is known."""
+        return auto_exposure(self._exitance()) if self.check is None else self.check.exposure
+
     def judged(self, errors: FloatArray) -> FloatArray:
         """Return predicted errors of vertices in the metric's unit.
 
@@ -206,56 +216,44 @@ class Judge:
     def _exitance(self) -> FloatArray:
         """Return what an accurate local model gives at the vertices, for its colours."""
         if self.base is None:
-            self.base = model_registry.get(_COLORED_BY)().shade(self.some)
+            plain = replace(self.some, detail=None)
+            self.base = exitance(model_registry.get(_COLORED_BY)(), plain)
         return self.base
 
-    def blended(self, chosen: Rung, known: list[Rung]) -> tuple[Blend | None, Rung | None, float]:
-        """Return the blend that saves most and suffices.
+    def suffices(self, blend: ShadingModel) -> bool:
+        """Tell whether a blend of an adequate model with an inadequate one is adequate.
 
         Parameters
         ----------
-        chosen : Rung
-            The better model.
-        known : list of Rung
-            Among them the cheaper one.
+        blend : ShadingModel
+            One whose weights keep the predicted error within the tolerance.
 
         Returns
         -------
-        tuple of Blend or None, Rung or None and float
-            With the cheaper model, and what is spent in milliseconds; for tolerances of colour
-            there is none (see `lutcore.blend.Blend`).
+        bool
+            What the check says, or True where nothing is checked.
         """
-        best: tuple[Blend | None, Rung | None, float] = None, None, chosen.milliseconds
-        if not (chosen.candidate.model.local and chosen.adequate):
-            return best
-        if self.tolerance.metric != "relative" or not self.lights:
-            return best
-        good = with_samples(chosen.candidate.model, self.samples)
-        each = self.costs[PREDICTION].per_vertex(self.count, self.lights)
-        found: list[tuple[float, Rung, Blend]] = []
-        for rung in known:
-            model = rung.candidate.model
-            if not model.local or rung.milliseconds >= chosen.milliseconds:
-                continue
-            blend = Blend(with_samples(model, self.samples), good, self.tolerance.value)
-            weights = blend.weights(self.scene)
-            spent = 1e-6 * self.count * each + float(
-                np.mean(weights < 1.0) * rung.milliseconds
-                + np.mean(weights > 0.0) * chosen.milliseconds
-            )
-            if spent < (1.0 - _WORTH) * chosen.milliseconds:
-                found.append((spent, rung, blend))
-        for spent, rung, blend in sorted(found, key=lambda one: one[0]):
-            if self._suffices(blend):
-                return blend, rung, spent
-        return best
-
-    def _suffices(self, blend: Blend) -> bool:
-        """Tell whether a blend of an adequate model with an inadequate one is adequate."""
         if self.check is None:
-            return True  # its weights keep the predicted error within the tolerance
+            return True
         given = exitance(blend, self.inputs)
         return self.check(_taken(given)).high <= self.tolerance.value
+
+    def unshadowed(self, model: ShadingModel) -> Checked | None:
+        """Return how wrong a model is that casts no shadows, beside the light with them.
+
+        Parameters
+        ----------
+        model : ShadingModel
+            Any.
+
+        Returns
+        -------
+        Checked or None
+            None where nothing casts a shadow, nothing is checked or the model is not local.
+        """
+        if self.check is None or self.inputs.visibility is None or not model.local:
+            return None
+        return self.check(_taken(exitance(model, without_shadows(self.inputs))))
 
     def enough(self, known: list[Candidate]) -> float | None:
         """Return how many times as large the body must be for a local model, by prediction.

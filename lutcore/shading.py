@@ -61,6 +61,9 @@ class ShadingInputs:
         Share of each light that reaches each vertex, 0 to 1, by channel where light that spreads
         has softened it; if not given, nothing casts a shadow. A local model never sees it: see
         `exitance`.
+    softened : ndarray, shape=(l, n, 3), optional
+        The same as local models are given it, where others need it as it is; see
+        `lutcore.visibility.softened`. If not given, `visibility` is for all.
     progress : callable
         Told where long work stands; see `lutcore.progress`.
     curvatures : PrincipalCurvatures, optional
@@ -79,6 +82,7 @@ class ShadingInputs:
     faces: IndexArray
     mm_per_unit: float
     visibility: FloatArray | None = None
+    softened: FloatArray | None = None
     progress: Progress = silent
     curvatures: PrincipalCurvatures | None = None
     detail: Detail | None = None
@@ -110,6 +114,10 @@ class ShadingModel(Parameters, ABC):
 
     local: ClassVar[bool] = True
     """Whether the value at a vertex depends on nothing of the mesh but that vertex."""
+
+    joint: ClassVar[bool] = False
+    """Whether what it gives under several lights, or in a channel, depends on the others: it then
+    gets visibility and detail and applies them itself, of a local model."""
 
     curved: ClassVar[bool] = False
     """Whether it needs `ShadingInputs.curvatures`, of a local model: others get them anyway."""
@@ -225,7 +233,7 @@ class ShadingModel(Parameters, ABC):
         Parameters
         ----------
         inputs : ShadingInputs
-            The scene, without visibility.
+            The scene, with visibility where something casts a shadow.
 
         Returns
         -------
@@ -422,14 +430,18 @@ def exitance(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
         If the progress asked to stop.
     """
     model = model.settled(inputs)
+    shares = inputs.visibility if inputs.softened is None else inputs.softened
     if not model.local:
         out = model.shade(bared(inputs))
-    elif inputs.visibility is None:
+    elif model.joint:
+        out = model.shade(inputs)
+    elif shares is None:
         out = _by_channel(model, inputs)
     else:
         out = np.zeros(inputs.points.shape)
-        for light, share in enumerate(inputs.visibility):
-            alone = replace(inputs, lights=inputs.lights[light : light + 1], visibility=None)
+        unshadowed = without_shadows(inputs)
+        for light, share in enumerate(shares):
+            alone = replace(unshadowed, lights=inputs.lights[light : light + 1])
             out += _by_channel(model, alone) * (share if share.ndim == 2 else share[:, None])
     _darken(out, inputs.normals)
     return out
@@ -458,6 +470,22 @@ def bared(inputs: ShadingInputs) -> ShadingInputs:
     """
     seen = inputs.detail
     return inputs if seen is None else replace(inputs, normals=seen.bare, detail=None)
+
+
+def without_shadows(inputs: ShadingInputs) -> ShadingInputs:
+    """Return what a model gets where nothing casts a shadow.
+
+    Parameters
+    ----------
+    inputs : ShadingInputs
+        Any.
+
+    Returns
+    -------
+    ShadingInputs
+        Without visibility.
+    """
+    return replace(inputs, visibility=None, softened=None)
 
 
 def _by_channel(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:

@@ -10,7 +10,6 @@ import numpy as np
 
 from app.chart.points import Missing
 from app.chart.race import Contestant, reason_of
-from app.lighting import world_lights
 from app.pipeline import Pipeline
 from app.session import Session
 from lutcore import analytic
@@ -107,12 +106,8 @@ def scene_of(session: Session, pipeline: Pipeline, axes: FloatArray) -> Scene:
     Scene
         With cast shadows where the session has them.
     """
-    inputs, lights = pipeline.inputs(session, axes), world_lights(session, axes)
-    seen, softened = (pipeline.visibility(session, local, lights) for local in (False, True))
-    return Scene(
-        gathering=bared(replace(inputs, visibility=seen)),
-        local=replace(inputs, visibility=softened),
-    )
+    inputs = pipeline.shadowed(session, axes)
+    return Scene(gathering=bared(inputs), local=inputs)
 
 
 def warm_up(session: Session, pipeline: Pipeline, lights: Sequence[Light]) -> Trial:

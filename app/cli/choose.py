@@ -3,7 +3,8 @@
 Predicts the error of each model from the mesh's curvature, the material and the lights, checks
 local models against light gathered at some thousand vertices, measures once what each costs on this
 machine, and takes the cheapest that is within the tolerance. The truth is the diffusion profile
-gathered over the surface itself. --model auto of the other commands does the same.
+gathered over the surface itself, with the shadows that the scene casts. --model auto of the other
+commands does the same.
 """
 
 import argparse
@@ -138,6 +139,7 @@ def _plain(session: "Session", pipeline: "Pipeline", found: "Needs") -> dict[str
             "confidence": CONFIDENCE,
             "milliseconds": choice.check_milliseconds,
             "none_because": choice.coverage.reason or None,
+            "shadows": choice.shadowed,
         },
         "table_samples": choice.samples,
         "shadows": None
@@ -146,6 +148,7 @@ def _plain(session: "Session", pipeline: "Pipeline", found: "Needs") -> dict[str
             "needed": found.shadows.needed,
             "share": found.shadows.share,
             "change": found.shadows.change,
+            "without": choice.unshadowed and choice.unshadowed._asdict(),
         },
         "scale": found.scale,
         "glow": found.glow,

@@ -48,7 +48,7 @@ def text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
     if found.shadows is not None:
         need = "needed" if found.shadows.needed else "not needed"
         change = f"{100.0 * found.shadows.change:.1f} % of the light (root mean square)"
-        lines.append(f"shadows: {need}; they change {change}")
+        lines.append(f"shadows: {need}; they change {change}{_unshadowed(choice)}")
     if found.scale is not None:
         finer = f"light carries an edge by {found.glow:.3g}"
         lines.append(f"scale of curvature: {found.scale:.3g} mesh units; {finer}")
@@ -77,7 +77,8 @@ def _check(choice: "Choice") -> str:
     from lutcore.checking import CONFIDENCE
 
     if choice.coverage.reason:
-        return f"not checked: {choice.coverage.reason}; the prediction decides"
+        left = ", which knows no cast shadows" if choice.shadowed else ""
+        return f"not checked: {choice.coverage.reason}; the prediction decides{left}"
     vertices = [rung.checked.vertices for rung in choice.rungs if rung.checked]
     least, most = min(vertices, default=0), max(vertices, default=0)
     many = f"{most:,}" if least == most else f"{least:,} to {most:,}"
@@ -87,10 +88,19 @@ def _check(choice: "Choice") -> str:
             f", drawn where borders take little of the light "
             f"({100.0 * choice.coverage.share:.0f} % of the vertices)"
         )
+    cast = "with cast shadows on both sides" if choice.shadowed else "without cast shadows"
     return (
-        f"checked at {many} vertices{near}, at {100.0 * CONFIDENCE:g} % confidence, without cast "
-        f"shadows; that took {choice.check_milliseconds:.3g} ms, once and not for each picture"
+        f"checked at {many} vertices{near}, at {100.0 * CONFIDENCE:g} % confidence, {cast}; that "
+        f"took {choice.check_milliseconds:.3g} ms, once and not for each picture"
     )
+
+
+def _unshadowed(choice: "Choice") -> str:
+    found = choice.unshadowed
+    if found is None:
+        return ""
+    enough = "within the tolerance" if found.high <= choice.tolerance.value else "too much"
+    return f"; without them what is chosen would be off by {found.score:.2g}, {enough}"
 
 
 def _elsewhere(choice: "Choice") -> list[str]:

@@ -56,6 +56,27 @@ class Scenes(Visibility):
         )
         return replace(unlit, lights=pack(world_lights(session, axes)), progress=self.progress)
 
+    def shadowed(self, session: Session, axes: FloatArray) -> "ShadingInputs":
+        """Return what models are chosen by, with cast shadows where the session has them.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its model is used.
+        axes : ndarray, shape=(3, 3)
+            The camera's axes, for lights that move with it.
+
+        Returns
+        -------
+        ShadingInputs
+            With shares of visibility as pictures have them, for local models and for others.
+        """
+        from dataclasses import replace
+
+        inputs, lights = self.inputs(session, axes), world_lights(session, axes)
+        seen, softened = (self.visibility(session, local, lights) for local in (False, True))
+        return replace(inputs, visibility=seen, softened=softened)
+
     def scene_key(self, session: Session, model: Method, axes: FloatArray) -> tuple[Hashable, ...]:
         """Return all that light on the surface depends on, but for shadows.
 

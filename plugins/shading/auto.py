@@ -17,11 +17,11 @@ class Auto(ShadingModel):
 
     Errors are predicted from curvature, its error bar, its change along the surface, the material
     and the lights (`lutcore.prediction`), and checked against light gathered at a sample of the
-    vertices (`lutcore.checking`); costs are measured on this machine (`lutcore.costs`). The table
-    of psi has as many samples as matter. Where a cheaper model suffices on part of the surface it
-    is blended in without a seam (`lutcore.blend`). Where no local model suffices, it is
-    `jensen2002`, which gathers the light of the whole mesh. `curvelight choose` tells what it is
-    and why.
+    vertices (`lutcore.checking`), with the shadows that the scene casts; costs are measured on this
+    machine (`lutcore.costs`). The table of psi has as many samples as matter. Where a cheaper model
+    suffices on part of the surface it is blended in without a seam (`lutcore.blend`). Where no
+    local model suffices, it is `jensen2002`, which gathers the light of the whole mesh.
+    `curvelight choose` tells what it is and why.
     """
 
     tolerance: float = param(0.02, 1e-4, 100.0, "", "How wrong it may be, in the metric's unit.")

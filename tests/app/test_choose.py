@@ -12,7 +12,7 @@ from app.cli.main import main
 from app.pipeline import Pipeline
 from app.session import Directional, Method, Session
 from lutcore import analytic
-from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
+from lutcore.costs import COLORS, PREDICTION, Cost, candidates, forget, remember
 from lutcore.tolerance import Tolerance
 from tests.mesh_files import ply
 
@@ -25,7 +25,7 @@ def known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     place = tmp_path / "costs.json"
     monkeypatch.setattr(kept, "place", lambda: place)
     forget()
-    remember({PREDICTION: Cost(5.0, "n")})
+    remember({PREDICTION: Cost(5.0, "n"), COLORS: Cost(5.0, "n")})
     for number, one in enumerate(candidates()):
         slow = 1.0 if one.model.local else 100.0
         remember({one.label: Cost(slow * (10.0 + number), one.model.growth)})
@@ -96,6 +96,26 @@ def test_the_check_overrules_the_prediction(ball: str, capsys: pytest.CaptureFix
     assert not found["choice"]["overruled"]
     assert found["check"]["none_because"] == "no check was asked for"
     assert all(one["checked"] is None for one in found["ladder"])
+
+
+def test_shadows_that_the_scene_casts_are_in_the_check(capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["choose", "sample:torus", "--mm-per-unit", "3", "--light", "0.9,0.2,0.35"]
+    loose = [*asked, "--tolerance", "0.2"]
+    for shadows in ("off", "on", "auto"):
+        assert main([*loose, "--shadows", shadows, "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["shadows"]["needed"]
+        assert found["check"]["shadows"] == (shadows != "off")
+        without = found["shadows"]["without"]
+        assert (without is None) == (shadows == "off")
+        assert without is None or without["score"] > found["tolerance"]
+    assert main([*loose, "--shadows", "on"]) == 0
+    text = capsys.readouterr().out
+    assert "with cast shadows on both sides" in text
+    assert "without them what is chosen would be off by" in text
+    assert "too much" in text
+    assert main([*asked, "--shadows", "on", "--predicted-only"]) == 0
+    assert "which knows no cast shadows" in capsys.readouterr().out
 
 
 def test_metric_and_tolerance_are_checked(ball: str) -> None:

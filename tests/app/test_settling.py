@@ -5,12 +5,16 @@ import pytest
 from msgspec.structs import replace
 
 from app import costs as costs_file
+from app.animation import stage
+from app.animation_motion import Motion
+from app.camera import axes, camera_of
 from app.cli.main import main
 from app.pipeline import Pipeline
+from app.probing import probe, with_readings
 from app.session import Directional, Method, Session, Settled, from_json, read, to_json
 from app.settling import model_of, recorded, settled
 from lutcore.blend import Blend
-from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
+from lutcore.costs import COLORS, PREDICTION, Cost, candidates, forget, remember
 from lutcore.errors import ParameterError
 from lutcore.shading import model_registry
 
@@ -22,7 +26,7 @@ def costs(tmp_path, monkeypatch):
     """Let no test measure: costs in the order of the models' names."""
     monkeypatch.setattr(costs_file, "place", lambda: tmp_path / "costs.json")
     forget()
-    remember({PREDICTION: Cost(5.0, "n")})
+    remember({PREDICTION: Cost(5.0, "n"), COLORS: Cost(5.0, "n")})
     for number, one in enumerate(candidates()):
         slow = 1.0 if one.model.local else 100.0
         remember({one.label: Cost(slow * (10.0 + number), one.model.growth)})
@@ -58,10 +62,13 @@ def test_what_is_not_registered_has_no_name():
 
 def test_what_is_named_is_made_again():
     blend = Blend(model("lambert", fresnel="directional"), model("curvature-lut", samples=16), 0.02)
-    for one in (blend, model("wrap", width=0.5)):
+    colors = Blend(model("wrap"), model("curvature-lut"), 2.5, 1.0 / 3.0)
+    for one in (blend, colors, model("wrap", width=0.5)):
         assert model_of(settled(one)) == one
     with pytest.raises(ValueError, match="together"):
         Settled(Method("lambert"), Method("wrap"))
+    with pytest.raises(ValueError, match="with a cheaper model"):
+        Settled(Method("lambert"), exposure=1.0)
 
 
 def another_machine():
@@ -103,6 +110,59 @@ def test_a_session_keeps_what_auto_came_to_in_its_scene():
         )
     assert recorded(changed, there, AXES).settled[0].scene != kept.settled[0].scene
     assert recorded(replace(kept, model=Method("wrap")), there, AXES).settled == ()
+
+
+@pytest.mark.parametrize(
+    ("metric", "value", "mm"),
+    [("relative", 0.03, 3.0), ("mean-de2000", 0.2, 10.0), ("p99-de2000", 2.0, 10.0)],
+)
+def test_a_blend_is_drawn_again_to_the_last_bit(metric, value, mm):
+    auto = Method("auto", {"tolerance": value, "metric": metric})
+    session = Session(mesh="sample:torus", mm_per_unit=mm, model=auto)
+    for one in candidates():
+        cheap = one.label == "lambert (fresnel directional)"
+        dear = 1e4 if one.label == "curvature-lut" else 1e6
+        remember({one.label: Cost(1.0 if cheap else dear, one.model.growth)})
+    here = Pipeline()
+    kept = from_json(to_json(recorded(session, here, AXES)))
+    (said,) = kept.settled
+    assert said.cheaper is not None
+    assert (said.exposure is None) == (metric == "relative")
+    light = here.exitance(session, session.model, AXES)
+    another_machine()
+    there = Pipeline()
+    np.testing.assert_array_equal(there.exitance(kept, kept.model, AXES), light)
+    # The probe shows what the picture does.
+    camera = camera_of(kept.camera, there.subject(kept), 1.0)
+    light = there.exitance(kept, kept.model, axes(camera))
+    reading = with_readings(probe(kept, there, 5), kept, there, camera, 1.0).readings[0]
+    np.testing.assert_allclose(reading.exitance, light[5], rtol=1e-12)
+
+
+def test_shadows_make_another_scene():
+    session = Session(mesh="sample:torus", mm_per_unit=3.0, model=Method("auto"))
+    pipeline = Pipeline()
+    found = {
+        shadows: recorded(replace(session, shadows=shadows), pipeline, AXES).settled[0].scene
+        for shadows in ("off", "on", "auto")
+    }
+    assert len(set(found.values())) == 3
+
+
+def test_a_film_is_shaded_with_what_its_session_says():
+    auto = Method("auto", {"check": "none"})
+    session = Session(
+        mesh="sample:torus",
+        mm_per_unit=1000.0,
+        model=auto,
+        shadows="auto",
+        lights=(Directional((0.3, 0.9, 0.2), frame="world"),),
+    )
+    kept = recorded(session, Pipeline(), AXES)
+    another_machine()
+    motion = Motion("turntable", 0.5, 4.0)
+    assert stage(kept, Pipeline(), motion).session.model == kept.settled[0].method
+    assert stage(session, Pipeline(), motion).session.model != kept.settled[0].method
 
 
 def test_pictures_and_session_files_carry_it_to_another_machine(tmp_path, capsys):

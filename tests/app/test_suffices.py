@@ -10,7 +10,7 @@ from app.session import Directional, Session
 from app.suffices import colored, sufficient
 from app.tabulated import table_arguments, within
 from lutcore.choice import choose
-from lutcore.costs import PREDICTION, Candidate, Cost
+from lutcore.costs import COLORS, PREDICTION, Candidate, Cost
 from lutcore.shading import model_registry
 from lutcore.tolerance import Tolerance, relative
 
@@ -18,7 +18,7 @@ from lutcore.tolerance import Tolerance, relative
 def _ladder(names):
     models = [Candidate(name, model_registry.get(name)()) for name in names]
     costs = {one.label: Cost(10.0 * (n + 1), "n") for n, one in enumerate(models)}
-    return models, costs | {PREDICTION: Cost(1e9, "n")}
+    return models, costs | {PREDICTION: Cost(1e9, "n"), COLORS: Cost(1e9, "n")}
 
 
 def test_each_vertex_gets_the_cheapest_model_within_the_tolerance() -> None:

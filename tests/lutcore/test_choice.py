@@ -9,7 +9,7 @@ from lutcore import analytic
 from lutcore.arrays import FloatArray
 from lutcore.blend import Blend, at
 from lutcore.choice import choose
-from lutcore.costs import PREDICTION, Candidate, Cost, candidates
+from lutcore.costs import COLORS, PREDICTION, Candidate, Cost, candidates
 from lutcore.errors import ParameterError
 from lutcore.lights import DirectionalLight
 from lutcore.prediction import Scene
@@ -26,6 +26,7 @@ LOCAL = {
 COSTS = {label: Cost(each, "n") for label, each in LOCAL.items()} | {
     "jensen2002": Cost(300.0, "n log n"),
     PREDICTION: Cost(12.0, "n"),
+    COLORS: Cost(60.0, "n"),
 }
 LIGHT = DirectionalLight((0.6, 0.3, 0.74))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
 
-from lutcore.costs import PREDICTION, Cost, candidates
+from lutcore.costs import COLORS, PREDICTION, Cost, candidates
 from tests.app.gui.conftest import pixels, settled
 from tests.app.gui.hands import click_menu, tick
 from tests.app.gui.mouse import move
@@ -14,7 +14,7 @@ from tests.app.gui.mouse import move
 def choose(window, qtbot, monkeypatch):
     """The dock, with costs as if this machine had been measured."""
     costs = {one.label: Cost(10.0 + n, one.model.growth) for n, one in enumerate(candidates())}
-    costs[PREDICTION] = Cost(5.0, "n")
+    costs[PREDICTION] = costs[COLORS] = Cost(5.0, "n")
     monkeypatch.setattr("app.costs.known", lambda: True)
     monkeypatch.setattr("app.choosing.measured", lambda progress, again: costs)
     click_menu(qtbot, window, "Window", "Choose")

@@ -15,7 +15,7 @@ from app.pipeline import Pipeline
 from app.session import Method, read
 from app.settling import model_of
 from lutcore.choice import choose
-from lutcore.costs import PREDICTION, Cost, candidates, forget, remember
+from lutcore.costs import COLORS, PREDICTION, Cost, candidates, forget, remember
 from tests.app.gui.conftest import pixels, settled
 from tests.app.gui.hands import click_tab, undo
 from tests.app.gui.mouse import move
@@ -204,7 +204,7 @@ def test_auto_keeps_its_model_in_a_drag_and_chooses_anew_after_it(
 ):
     monkeypatch.setattr(costs, "place", lambda: tmp_path / "costs.json")
     known = {one.label: Cost(10.0 + n, one.model.growth) for n, one in enumerate(candidates())}
-    remember(known | {PREDICTION: Cost(5.0, "n")})
+    remember(known | {PREDICTION: Cost(5.0, "n"), COLORS: Cost(5.0, "n")})
     chosen = []
 
     def counted(*arguments, **named):
