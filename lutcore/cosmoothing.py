@@ -167,7 +167,6 @@ def smoothed_normals(fields: FloatArray, change: SingleArray, base: int) -> Floa
     return normals
 
 
-@compiled(parallel=True, packed=True)
 def shape_operators(
     start: IndexArray,
     neighbour: IndexArray,
@@ -199,15 +198,36 @@ def shape_operators(
     tuple of ndarray
         `Smoothed.normals`, and `tensors` and `stretch` of the smoothings from `first` to S.
     """
+    count, scales = change.shape[1], change.shape[0] + 1 - first
+    normals = np.empty((count, 3))
+    tensors = np.empty((count, scales, 3), np.float32)
+    stretch = np.empty((count, scales), np.float32)
+    fit_shape_operators(
+        start, neighbour, fields, change, base, spacing, first, normals, tensors, stretch
+    )
+    return normals, tensors, stretch
+
+
+@compiled(parallel=True, packed=True)
+def fit_shape_operators(
+    start: IndexArray,
+    neighbour: IndexArray,
+    fields: FloatArray,
+    change: SingleArray,
+    base: int,
+    spacing: float,
+    first: int,
+    normals: FloatArray,
+    tensors: SingleArray,
+    stretch: SingleArray,
+) -> None:
+    """Do what `shape_operators` does, into arrays that are there."""
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
     widest = 0
     for i in range(count):
         widest = max(widest, start[i + 1] - start[i])
-    normals = np.empty((count, 3))
-    tensors = np.empty((count, scales + 1 - first, 3), np.float32)
-    stretch = np.empty((count, scales + 1 - first), np.float32)
     for i in prange(count):
         n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n
@@ -245,7 +265,6 @@ def shape_operators(
                 cxx = cxy = cyy = 0.0
             s = symmetric_fit(cxx, cxy, cyy, bxx, bxy, byy)
             tensors[i, to, 0], tensors[i, to, 1], tensors[i, to, 2] = s
-    return normals, tensors, stretch
 
 
 @compiled()
