@@ -84,7 +84,9 @@ def camera_of(chosen: str | Camera, subject: Subject, aspect: float, whole: bool
         return chosen
     mesh = subject.mesh
     # Stray islands do not shrink the view.
-    points = mesh.vertices[np.unique(mesh.faces) if whole else main_islands(mesh)]
+    seen = np.unique(mesh.faces) if whole else main_islands(mesh)
+    every = not whole and seen.all()  # then a copy would only take time
+    points = mesh.vertices if every else mesh.vertices[seen]
     if chosen == "auto" and subject.sample is not None:
         return fit_direction(subject.sample.view, subject.sample.up, points, aspect)
     return fit("front" if chosen == "auto" else chosen, points, aspect)

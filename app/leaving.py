@@ -99,17 +99,12 @@ def exit_transmittance(
     ndarray, shape=(n, 1) or (n, 3)
         0 to 1; one column where the channels have one index.
     """
-    if camera.height is None:
-        towards = np.asarray(camera.position) - mesh.vertices
-        towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-        cosine = np.einsum("ij,ij->i", normals, towards)
-    else:
-        cosine = normals @ axes(camera)[2]
-    # A surface seen from behind, through a hole, is shown as its front would be.
-    from lutcore.fresnel import transmittance
+    from lutcore.fresnel import leaving_along, leaving_to
 
-    indices = eta if len(set(eta)) > 1 else eta[:1]
-    return np.stack([transmittance(np.abs(cosine), index) for index in indices], axis=1)
+    indices = np.array(eta if len(set(eta)) > 1 else eta[:1])
+    if camera.height is None:
+        return leaving_to(np.asarray(camera.position), mesh.vertices, normals, indices)
+    return leaving_along(axes(camera)[2], normals, indices)
 
 
 def view_of(session: Session, pipeline: Pipeline, aspect: float) -> Camera:

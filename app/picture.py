@@ -24,7 +24,7 @@ from app.shown import names_shown, shown
 from app.steps.subject import Subject
 from app.texturing import Coat
 from lutcore.arrays import FloatArray
-from lutcore.color import auto_exposure, product_bytes
+from lutcore.color import product_bytes, product_exposure
 from lutcore.errors import ParameterError
 from lutcore.shading import AUTO
 
@@ -232,7 +232,7 @@ class _Studio:
     def _lit(self, model: Method, caption: str) -> Surface:
         """Show a model's light; a texture is drawn by the pixel."""
         if self.exposure is None:
-            self.exposure = auto_exposure(self._linear(model))
+            self.exposure = self._exposure(model)
         light = self.pipeline.exitance(self.session, model, self.axes, self.drafted)
         rgb = product_bytes(light, self._leaving(), self.exposure)
         facing = self.pipeline.facing(self.session)
@@ -249,10 +249,10 @@ class _Studio:
         found = settled(self.pipeline.settled(self.session, model, self.axes))
         return f"{model.name}: {found.label}"
 
-    def _linear(self, model: Method) -> FloatArray:
-        """Light towards the camera, times pi: exitance, exit Fresnel factor, albedo."""
+    def _exposure(self, model: Method) -> float:
         # Kolchin 2007, eq. 6: L_o = F_t(N_o . w_o) / pi times the exitance.
-        return self.pipeline.exitance(self.session, model, self.axes) * self._leaving()
+        light = self.pipeline.exitance(self.session, model, self.axes)
+        return product_exposure(light, self._leaving())
 
     def _leaving(self, textured: bool = True) -> FloatArray:
         return leaving(self.session, self.pipeline, self.camera, textured)
@@ -300,7 +300,7 @@ class _Studio:
             # Models are of one material, so nearly as bright as the first. Among materials the
             # brightest decides: what is clipped could not be compared.
             counted = studios if self.session.compared_by == "material" else studios[:1]
-            self.exposure = min(auto_exposure(one._linear(one.session.model)) for one in counted)
+            self.exposure = min(one._exposure(one.session.model) for one in counted)
         everywhere = np.ones(len(self.subject.mesh.vertices), dtype=bool)
         singles = []
         for one, label in zip(studios, labels(self.session), strict=True):

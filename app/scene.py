@@ -137,9 +137,10 @@ def shape_of(mesh: TriangleMesh, origin: Vector) -> vtkPolyData:
     # The GPU gets single precision: around what is looked at it stays exact, however far the mesh
     # lies from the origin or stray parts lie from the mesh.
     around = (mesh.vertices - np.asarray(origin)).astype(np.float32)
-    points.SetData(numpy_to_vtk(around, deep=True))
+    # Not copied: nobody changes them, and VTK holds what it was given.
+    points.SetData(numpy_to_vtk(around, deep=False))
     cells = vtkCellArray()
-    cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=True))
+    cells.SetData(3, numpy_to_vtk(mesh.faces.ravel(), deep=False))
     shape = vtkPolyData()
     shape.SetPoints(points)
     shape.SetPolys(cells)

@@ -11,7 +11,11 @@ from lutcore.compiled import compiled
 
 # No byte is passed over within one part: sRGB rises by 0.8 bytes in it where it is steepest.
 _PARTS = 4096
-_HALVINGS = 70  # of 0 to 1: doubles near the least threshold, 1.5e-4, are 2^-65 apart
+# Linear value that automatic exposure brings a percentile to, and which.
+_WHITE, _SHARE = 0.85, 99.0
+# Decoding is off by some 1e-15 of a value.
+_APART = 1e-12
+_HALVINGS = 16  # of twice that share of a value: doubles are 1.1e-16 of it apart, or more
 
 
 def srgb_decode(encoded: FloatArray) -> FloatArray:
@@ -123,7 +127,8 @@ def _steps() -> tuple[FloatArray, NDArray[np.uint8]]:
     """Return the least value of each byte, and the byte at the start of each of equal parts."""
     least = np.full(257, np.inf)
     least[0] = 0.0
-    low, high = np.zeros(255), np.ones(255)
+    steps = srgb_decode(np.arange(0.5, 255.0, dtype=np.float64) / 255.0)
+    low, high = steps * (1.0 - _APART), steps * (1.0 + _APART)
     # Halved until no double lies between: the very values at which `srgb_bytes` steps.
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -155,7 +160,7 @@ def _product_bytes(
     return encoded
 
 
-def auto_exposure(linear: FloatArray, white: float = 0.85, share: float = 99.0) -> float:
+def auto_exposure(linear: FloatArray, white: float = _WHITE, share: float = _SHARE) -> float:
     """Return the exposure that brings a high percentile of the brightest channel near white.
 
     Parameters
@@ -172,6 +177,39 @@ def auto_exposure(linear: FloatArray, white: float = 0.85, share: float = 99.0) 
     float
         The exposure; 1 where all is black.
     """
-    brightest = linear.max(axis=1)
+    return _exposure(linear.max(axis=1), white, share)
+
+
+def product_exposure(light: FloatArray, factor: FloatArray) -> float:
+    """Return `auto_exposure` of a product, several times as fast and the same to the last bit.
+
+    Parameters
+    ----------
+    light : ndarray, shape=(n, 3)
+        Linear values, all finite.
+    factor : ndarray, shape=(n, 1) or (n, 3)
+        What they are multiplied by, for all channels or for each.
+
+    Returns
+    -------
+    float
+        The exposure; 1 where all is black.
+    """
+    brightest = np.empty(len(light))
+    _brightest(light, factor, brightest)
+    return _exposure(brightest, _WHITE, _SHARE)
+
+
+def _exposure(brightest: FloatArray, white: float, share: float) -> float:
     lit = brightest[brightest > 0.0]
     return float(white / np.percentile(lit, share)) if lit.size else 1.0
+
+
+@compiled(parallel=True)
+def _brightest(light: FloatArray, factor: FloatArray, out: FloatArray) -> None:
+    last = factor.shape[1] - 1
+    for i in prange(len(light)):
+        most = light[i, 0] * factor[i, 0]
+        for channel in range(1, 3):
+            most = max(most, light[i, channel] * factor[i, min(channel, last)])
+        out[i] = most

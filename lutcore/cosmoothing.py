@@ -202,17 +202,18 @@ def shape_operators(
     tuple of ndarray
         `Smoothed.normals`, and `tensors` and `stretch` of the smoothings from `first` to S.
     """
-    scales, count = change.shape[:2]
+    count, scales = change.shape[1], change.shape[0] + 1 - first
     normals = np.empty((count, 3))
-    tensors = np.empty((count, scales + 1 - first, 3), np.float32)
-    stretch = np.empty((count, scales + 1 - first), np.float32)
-    given = start, neighbour, fields, change, base, spacing, first
-    _write_operators(*given, normals, tensors, stretch)
+    tensors = np.empty((count, scales, 3), np.float32)
+    stretch = np.empty((count, scales), np.float32)
+    fit_shape_operators(
+        start, neighbour, fields, change, base, spacing, first, normals, tensors, stretch
+    )
     return normals, tensors, stretch
 
 
 @compiled(parallel=True, packed=True)
-def _write_operators(
+def fit_shape_operators(
     start: IndexArray,
     neighbour: IndexArray,
     fields: FloatArray,
@@ -224,7 +225,8 @@ def _write_operators(
     tensors: SingleArray,
     stretch: SingleArray,
 ) -> None:
-    scales, count = change.shape[:2]
+    """Do what `shape_operators` does, into arrays that are there."""
+    count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
     widest = 0

@@ -17,7 +17,7 @@ from lutcore.arrays import FloatArray, finite
 from lutcore.baking import bake, glowing, resolved
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
-from lutcore.cosmoothing import Surface, shape_operators, smoothed_normals, surface
+from lutcore.cosmoothing import Surface, fit_shape_operators, smoothed_normals, surface
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
 from lutcore.estimation import sized_to_one
@@ -141,11 +141,14 @@ def detail_seen(
     # memory that is touched first costs most here.
     convex = change[:6].reshape(-1).view(np.float64).reshape(3, -1, 6)
     normals = np.empty((3, count, 3))
+    room = _Room.of(len(on.points))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
-        facing, tensors = _geometry(on, change[2 * channel : 2 * channel + 2])
-        normals[channel] = welded.spread(facing, 0.0)
-        _convex_part(facing, tensors, 1.0 / (unit * size), convex[channel])
+        facing = room.normals if welded.moved else normals[channel]
+        _geometry(on, change[2 * channel : 2 * channel + 2], facing, room)
+        if welded.moved:
+            normals[channel] = welded.spread(facing, 0.0)
+        _convex_part(facing, room.tensors, 1.0 / (unit * size), convex[channel])
     shape = convex
     if welded.moved:
         shape = np.stack([welded.spread(one, 0.0) for one in convex])
@@ -166,17 +169,38 @@ def _passing(
     return [of(known.normals), of(known.curvature)]
 
 
-def _geometry(on: Surface, change: SingleArray) -> tuple[FloatArray, FloatArray]:
-    """Return the normals after the first change, and the shape operators after the second."""
+@dataclass(frozen=True)
+class _Room:
+    """Arrays that all channels are worked out in, one after the other."""
+
+    normals: FloatArray
+    fitted: SingleArray
+    stretch: SingleArray
+    tensors: FloatArray
+    error: FloatArray
+
+    @classmethod
+    def of(cls, count: int) -> "_Room":
+        return cls(
+            np.empty((count, 3)),
+            np.empty((count, 1, 3), np.float32),
+            np.empty((count, 1), np.float32),
+            np.empty((count, 3)),
+            np.empty(count),
+        )
+
+
+def _geometry(on: Surface, change: SingleArray, normals: FloatArray, room: _Room) -> None:
+    """Write the normals after the first change, and the shape operators after the second."""
     links = (on.operator.start, on.operator.neighbour)
-    normals, fitted, stretch = shape_operators(*links, on.fields, change, 0, on.spacing, 2)
-    tensors = fitted[:, 0].astype(np.float64)
+    given = (*links, on.fields, change, 0, on.spacing, 2)
+    fit_shape_operators(*given, normals, room.fitted, room.stretch)
+    room.tensors[:] = room.fitted[:, 0]
     # Half a star, or one that has closed, tells less than its neighbours.
-    weak = np.flatnonzero(on.operator.rim | (stretch[:, 0] < _CLOSED)).astype(np.int32)
+    weak = np.flatnonzero(on.operator.rim | (room.stretch[:, 0] < _CLOSED)).astype(np.int32)
     told = np.ones(len(weak), np.bool_)
-    even = np.ones(len(tensors))
-    borrow(*links, normals, weak, told, tensors, even, even[weak])
-    return normals, tensors
+    room.error[:] = 1.0
+    borrow(*links, normals, weak, told, room.tensors, room.error, np.ones(len(weak)))
 
 
 @compiled(parallel=True)

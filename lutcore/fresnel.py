@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
+from numba import prange
 
 from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
@@ -69,6 +70,79 @@ def transmittances(cosine: float, eta: FloatArray) -> tuple[float, float, float]
     if eta[0] == eta[1] and eta[0] == eta[2]:
         return red, red, red
     return red, compiled_transmittance(cosine, eta[1]), compiled_transmittance(cosine, eta[2])
+
+
+def leaving_to(
+    place: FloatArray, points: FloatArray, normals: FloatArray, eta: FloatArray
+) -> FloatArray:
+    """Return the transmittance of light that leaves points of a surface for a place.
+
+    A surface seen from behind, through a hole, counts as its front would.
+
+    Parameters
+    ----------
+    place : ndarray, shape=(3,)
+        Where the light goes to.
+    points, normals : ndarray, shape=(n, 3)
+        Where it leaves, and the unit normals there.
+    eta : ndarray, shape=(c,)
+        Refractive indices.
+
+    Returns
+    -------
+    ndarray, shape=(n, c)
+        0 to 1.
+    """
+    out = np.empty((len(points), len(eta)))
+    _leave_to(place, points, normals, eta, out)
+    return out
+
+
+def leaving_along(direction: FloatArray, normals: FloatArray, eta: FloatArray) -> FloatArray:
+    """Return the transmittance of light that leaves a surface in one direction.
+
+    Parameters
+    ----------
+    direction : ndarray, shape=(3,)
+        A unit vector.
+    normals, eta
+        As for `leaving_to`.
+
+    Returns
+    -------
+    ndarray, shape=(n, c)
+        0 to 1.
+    """
+    out = np.empty((len(normals), len(eta)))
+    _leave_along(direction, normals, eta, out)
+    return out
+
+
+@compiled(parallel=True)
+def _leave_to(
+    place: FloatArray, points: FloatArray, normals: FloatArray, eta: FloatArray, out: FloatArray
+) -> None:
+    for i in prange(len(points)):
+        x, y, z = place[0] - points[i, 0], place[1] - points[i, 1], place[2] - points[i, 2]
+        length = np.sqrt(x * x + y * y + z * z)
+        _leaving(out, i, normals, x / length, y / length, z / length, eta)
+
+
+@compiled(parallel=True)
+def _leave_along(
+    direction: FloatArray, normals: FloatArray, eta: FloatArray, out: FloatArray
+) -> None:
+    for i in prange(len(normals)):
+        _leaving(out, i, normals, direction[0], direction[1], direction[2], eta)
+
+
+@compiled()
+def _leaving(
+    out: FloatArray, i: int, normals: FloatArray, x: float, y: float, z: float, eta: FloatArray
+) -> None:
+    cosine = abs(normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z)
+    for index in range(len(eta)):
+        out[i, index] = compiled_transmittance(cosine, eta[index])
 
 
 def _nodes() -> tuple[FloatArray, FloatArray]:

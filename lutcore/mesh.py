@@ -73,8 +73,8 @@ def _vertices(value: ArrayLike) -> FloatArray:
         raise MeshError("the vertex positions are not numbers") from None
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise MeshError(f"vertices have shape {vertices.shape}, expected (n, 3)")
-    good: BoolArray = np.asarray(np.isfinite(vertices).all(axis=1))
-    if not good.all():
+    if not np.isfinite(vertices).all():
+        good: BoolArray = np.asarray(np.isfinite(vertices).all(axis=1))
         first = int(np.argmin(good))
         raise MeshError(
             f"{np.count_nonzero(~good)} of {len(good)} vertex positions are not finite, "
@@ -93,8 +93,8 @@ def _faces(value: ArrayLike, vertex_count: int) -> IndexArray:
         raise MeshError(f"faces are of type {faces.dtype}, expected whole numbers")
     if vertex_count > np.iinfo(np.int32).max:
         raise MeshError(f"{vertex_count} vertices are more than 32-bit indices can name")
-    bad = ((faces < 0) | (faces >= vertex_count)).any(axis=1)
-    if bad.any():
+    if faces.min() < 0 or faces.max() >= vertex_count:
+        bad = ((faces < 0) | (faces >= vertex_count)).any(axis=1)
         first = int(np.argmax(bad))
         raise MeshError(
             f"{np.count_nonzero(bad)} of {len(faces)} faces use vertices that do not exist, "

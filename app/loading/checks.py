@@ -45,8 +45,8 @@ def checked(surface: RawSurface) -> tuple[TriangleMesh, FloatArray | None]:
     _check_indices(surface.corners, counts, len(vertices))
     corners, counts = _without_slivers(surface)
     # A comparison with NaN is false.
-    good: BoolArray = np.all(np.abs(vertices) < _LARGEST, axis=1)
-    if not good.all():
+    if not (vertices.min() > -_LARGEST and vertices.max() < _LARGEST):
+        good: BoolArray = np.all(np.abs(vertices) < _LARGEST, axis=1)
         corners, counts, vertices = _without_bad_positions(surface, corners, counts, good)
     faces = triangulated(vertices, corners, counts, surface.warnings)
     return TriangleMesh(vertices, faces), surface.colors
@@ -66,8 +66,8 @@ def _check_shapes(surface: RawSurface) -> None:
 
 
 def _check_indices(corners: AnyArray, counts: AnyArray, vertex_count: int) -> None:
-    bad = (corners < 0) | (corners >= vertex_count)
-    if bad.any():
+    if len(corners) and (corners.min() < 0 or corners.max() >= vertex_count):
+        bad = (corners < 0) | (corners >= vertex_count)
         first = int(np.argmax(bad))
         face = int(np.searchsorted(np.cumsum(counts), first, side="right"))
         raise BadContentError(

@@ -79,7 +79,8 @@ def _polygons(tables: dict[str, Table], warnings: list[str]) -> tuple[AnyArray, 
 def _indices(corners: AnyArray) -> AnyArray:
     if corners.dtype.kind == "f":
         raise BadContentError("its face indices are declared as fractions", "export it again")
-    return corners.astype(np.int64)
+    # Most are whole numbers of 32 bits, as meshes keep them: twice as wide they take twice as long.
+    return corners if corners.dtype == np.int32 else corners.astype(np.int64)
 
 
 def _colors(points: dict[str, AnyArray], warnings: list[str]) -> FloatArray | None:

@@ -109,7 +109,7 @@ LOOPS: dict[str, Counter] = {
     "lutcore.lowpass._begin": rewriting(),
     "lutcore.lowpass._step": rewriting(4),
     "lutcore.lowpass._add_step": adding_bytes,
-    "lutcore.cosmoothing.shape_operators": rewriting(),
+    "lutcore.cosmoothing.fit_shape_operators": rewriting(),
     "lutcore.bands._energies": rewriting(),
     "lutcore.bands._average": rewriting(),
     "lutcore.selection._mix": rewriting(),

@@ -2,7 +2,14 @@ import colour
 import numpy as np
 import pytest
 
-from lutcore.color import _steps, auto_exposure, product_bytes, srgb_bytes, srgb_decode
+from lutcore.color import (
+    _steps,
+    auto_exposure,
+    product_bytes,
+    product_exposure,
+    srgb_bytes,
+    srgb_decode,
+)
 from lutcore.metrics import ciede2000, ciede2000_lab
 
 
@@ -53,6 +60,15 @@ def test_the_difference_of_bytes_is_that_of_the_colours_they_show():
     black, white = np.zeros((1, 3), np.uint8), np.full((1, 3), 255, np.uint8)
     assert abs(ciede2000(black, white)[0] - 100.0) < 0.01
     assert ciede2000(white, white)[0] == 0.0
+
+
+@pytest.mark.parametrize("columns", [1, 3])
+def test_the_exposure_of_a_product_is_that_of_its_values(columns):
+    random = np.random.default_rng(3)
+    light = np.maximum(random.normal(size=(5_000, 3)), 0.0)
+    factor = random.uniform(size=(5_000, columns))
+    assert product_exposure(light, factor) == auto_exposure(light * factor)
+    assert product_exposure(0.0 * light, factor) == 1.0
 
 
 def test_bytes_of_a_product_are_those_of_its_values():

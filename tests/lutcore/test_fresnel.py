@@ -7,6 +7,8 @@ from lutcore.fresnel import (
     compiled_transmittance,
     hinges,
     internal_reflectance,
+    leaving_along,
+    leaving_to,
     mean_transmittance,
     transmittance,
     virtual_depth,
@@ -88,3 +90,19 @@ def test_more_hinges_fit_better(eta: float) -> None:
 
 def test_hinges_are_the_same_object() -> None:
     assert hinges(1.3, 4) is hinges(1.3, 4)
+
+
+def test_what_leaves_for_a_place_is_the_transmittance_along_the_way() -> None:
+    random = np.random.default_rng(2)
+    points, normals = random.normal(size=(2, 500, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    place, eta = np.array([4.0, -1.0, 2.0]), np.array([1.3, 1.5, 1.7])
+    towards = (place - points) / np.linalg.norm(place - points, axis=1, keepdims=True)
+    for directions, found in (
+        (towards, leaving_to(place, points, normals, eta)),
+        (towards[:1], leaving_along(towards[0], normals, eta)),
+    ):
+        # From behind as from the front.
+        cosine = np.abs((normals * directions).sum(axis=1))
+        expected = np.stack([transmittance(cosine, index) for index in eta], axis=1)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14)
