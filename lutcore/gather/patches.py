@@ -18,7 +18,7 @@ _DEVIATION = 5e-3
 _DEEPEST = 5
 # Over a triangle whose longest edge is as long as the shortest l_u light may bend by so much more
 # than the error allowed: its power is kept, and the profile tells little more there.
-_BLURRED = 16.0
+_BLURRED = 64.0
 _STACK = 3 * _DEEPEST + 4
 _CHUNK = 256
 _BITS = 64
@@ -61,7 +61,7 @@ def patches(inputs: ShadingInputs, tolerance: float = 0.0) -> Patches:
     inputs : ShadingInputs
         Geometry, lights, material and visibility.
     tolerance : float
-        Error allowed for what is gathered, relative, 0 or more: light may bend by 16 times as much
+        Error allowed for what is gathered, relative, 0 or more: light may bend by 64 times as much
         over a patch whose longest edge is as long as the shortest l_u, by four times that over one
         half as long and so on.
 
