@@ -169,7 +169,7 @@ def hierarchy(inputs: ShadingInputs, tolerance: float, progress: Progress) -> Hi
         If the progress asked to stop.
     """
     tell(progress, 0.0, "sampling the light that enters")
-    of = patches(inputs)
+    of = patches(inputs, tolerance)
     tell(progress, 0.5, "building the octree")
     tree = octree(of)
     known = _known(inputs)

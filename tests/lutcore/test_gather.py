@@ -8,11 +8,12 @@ from lutcore import analytic
 from lutcore.diffusion import diffusion_profile, optics
 from lutcore.errors import CancelledError
 from lutcore.fresnel import transmittance
+from lutcore.gather.entering import at_vertices, surface
 from lutcore.gather.exitance import exact, gathered
 from lutcore.gather.kernel import kernel, place, radial
 from lutcore.gather.octree import octree
-from lutcore.gather.patches import patches
-from lutcore.geometry import area_normals, vertex_areas, vertex_corners
+from lutcore.gather.patches import patches, power_of
+from lutcore.geometry import area_normals, face_areas, vertex_areas, vertex_corners
 from lutcore.lights import DirectionalLight, PointLight, pack
 from lutcore.materials import material
 from lutcore.mesh import TriangleMesh
@@ -242,3 +243,16 @@ def test_it_can_be_cancelled(step):
     inputs = inputs_of(mesh, normals, progress=lambda share, now: now != step)
     with pytest.raises(CancelledError, match=step):
         gathered(inputs, DEFAULT)
+
+
+def test_patches_of_a_rough_surface_keep_its_power():
+    mesh = analytic.torus(3_000, major=8.0, minor=3.0).noisy(0.1)
+    inputs = inputs_of(mesh, area_normals(mesh, vertex_corners(mesh)), COLORED)
+    fine, coarse = patches(inputs), patches(inputs, DEFAULT)
+    assert len(coarse.light) < 0.6 * len(fine.light)
+    truth, found = (power_of(*one)[0] for one in (fine, coarse))
+    light = at_vertices(surface(inputs))
+    linear = (face_areas(mesh)[:, None] * light[mesh.faces].mean(axis=1)).sum(axis=0)
+    # Exact to the second order, and so far better than what the corners alone tell: of either sign
+    # over the triangles, it cancels in part.
+    assert np.abs(found / truth - 1.0).max() < 0.25 * np.abs(linear / truth - 1.0).max()
