@@ -32,6 +32,8 @@ class Choice:
         A cheaper model mixed in where it suffices, if that pays.
     cheaper : Rung or None
         That model.
+    cheaper_share : float
+        Share of the vertices where it is taken, alone or in part.
     milliseconds : float
         Of what is chosen, blend included, each time it shades; the check is paid once.
     samples : int
@@ -43,7 +45,8 @@ class Choice:
     check_milliseconds : float
         What the check took, once.
     enough : float or None
-        Where no local model suffices, how many times as large the body must be for one.
+        Where no local model suffices, how many times as large the body must be for one, by
+        prediction; None where none would do, or the prediction is content with one as it is.
     shadowed : bool
         Whether something casts a shadow: it is then on both sides of the check, and in no
         prediction.
@@ -57,6 +60,7 @@ class Choice:
     by_prediction: Rung
     blend: Blend | None
     cheaper: Rung | None
+    cheaper_share: float
     milliseconds: float
     samples: int
     tolerance: Tolerance
@@ -155,18 +159,21 @@ def choose(
     chosen = adequate[0] if adequate else min(known, key=lambda rung: rung.best_score)
     predicted = [rung for rung in known if rung.predicted]
     by_prediction = predicted[0] if predicted else min(known, key=lambda rung: rung.score)
-    blend, cheaper, spent = mixed(judge, chosen, known)
+    blended = mixed(judge, chosen, known)
     enough = None
-    if whole and not any(rung.candidate.model.local for rung in adequate):
+    # Where the prediction is content with a local model, it tells nothing of what would do.
+    content = by_prediction.predicted and by_prediction.candidate.model.local
+    if whole and not content and not any(rung.candidate.model.local for rung in adequate):
         enough = judge.enough([rung.candidate for rung in known])
-    model = blend or with_samples(chosen.candidate.model, samples)
+    model = blended.blend or with_samples(chosen.candidate.model, samples)
     return Choice(
         rungs=tuple(rungs),
         chosen=chosen,
         by_prediction=by_prediction,
-        blend=blend,
-        cheaper=cheaper,
-        milliseconds=spent,
+        blend=blended.blend,
+        cheaper=blended.cheaper,
+        cheaper_share=blended.share,
+        milliseconds=blended.milliseconds,
         samples=samples,
         tolerance=tolerance,
         coverage=judge.coverage,

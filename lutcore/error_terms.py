@@ -50,8 +50,8 @@ DOUBT = 3.1
 _SIZE, _CHANGE = 1.1, 1.5
 # The error bar over the facets' width, times this, is how much of the gradient may be noise.
 _NOISE_OF_SLOPE = 1.2
-# Powers of the angle of bumps, and of the light that does and does not cross facets.
-_STEEPER, _CROSSING = 1.2, 1.0 / 6.0
+# Power of the angle of bumps; that of the light that does and does not cross facets is 1/6.
+_STEEPER = 1.2
 # Share of that angle by which cosines beside the normal's count for what is off on flat surfaces.
 _WOBBLE = 0.5
 _CLOSED = 1e-6
@@ -147,7 +147,7 @@ def _read(curve: FloatArray, cosine: float) -> float:
 
 @compiled()
 def _error(
-    at: tuple[float, float, float, float, float, float, float, float],
+    at: tuple[float, float, float, float, float, float, float, float, float],
     way: tuple[float, float, float, float],
     spread: tuple[float, float, float, float],
     radius: float,
@@ -161,13 +161,13 @@ def _error(
     """Return the bound for one light and channel.
 
     Numbers and bare arrays instead of named tuples, which would be copied with every call. `at` is
-    k1, k2, error, facet, rough, tilt, bumps and the size of the slope, `way` N.w, w along both
-    principal directions and the slope along w, `spread` that of the channel.
+    k1, k2, error, facet, rough, tilt, bumps, their power and the size of the slope, `way` N.w, w
+    along both principal directions and the slope along w, `spread` that of the channel.
     """
     a, u, v, steep = way
     length, psi_0, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
-    noise, facet, rough, tilt, bumps, slope = at[2], at[3], at[4], at[5], at[6], at[7]
+    noise, facet, rough, tilt, bumps, slope = at[2], at[3], at[4], at[5], at[6], at[8]
     p, q = max(k1, 0.0), max(k2, 0.0)
     sine = np.sqrt(u * u + v * v)
     b = np.sqrt((p * u) ** 2 + (q * v) ** 2)
@@ -213,7 +213,7 @@ def _error(
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
     error += parts[7] * (lit + 1.5 * edge_ * edge_)
     error += parts[8] * held * rough * lit
-    crossed = (4.0 * held * (1.0 - held)) ** _CROSSING * bumps**_STEEPER
+    crossed = np.sqrt(np.cbrt(4.0 * held * (1.0 - held))) * at[7]
     error += (parts[9] * tilt + parts[10] * crossed) * sine * fall_beside
     error += parts[11] * e2 + parts[12] * _glow(a, beside, psi_0, per_width, w, corners)
     return min(max(error, parts[13]), 1.0)
@@ -259,7 +259,8 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
         if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
             continue
         steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
-        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], bumps[i], steepest)
+        grain = (bumps[i], bumps[i] ** _STEEPER)
+        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], *grain, steepest)
         for light in range(len(lights)):
             x, y, z, strength = light_at(lights, light, points[i, 0], points[i, 1], points[i, 2])
             a = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z

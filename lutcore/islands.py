@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from lutcore.arrays import BoolArray, IndexArray
-from lutcore.compiled import compiled
+from lutcore.arrays import BoolArray
 from lutcore.mesh import TriangleMesh
 from lutcore.topology import components
 
@@ -25,17 +24,8 @@ def main_islands(mesh: TriangleMesh) -> BoolArray:
         True for referenced vertices of every island that is not far smaller than the largest.
     """
     count, labels = components(mesh.faces, len(mesh.vertices))
-    return _within(mesh.faces, labels, count)
-
-
-@compiled()
-def _within(faces: IndexArray, labels: IndexArray, count: int) -> BoolArray:
-    """Return which things have a label that enough faces have."""
-    sizes = np.zeros(count, np.int64)
-    for face in range(len(faces)):
-        sizes[labels[faces[face, 0]]] += 1
-    least = max(_DEBRIS * sizes.max(), 1.0)
-    within = np.empty(len(labels), np.bool_)
-    for thing in range(len(labels)):
-        within[thing] = sizes[labels[thing]] >= least
-    return within
+    if count == 1:  # of one piece and nothing beside: most meshes, and large ones
+        return np.ones(len(labels), np.bool_)
+    sizes = np.bincount(labels[mesh.faces[:, 0]], minlength=count)
+    large: BoolArray = (sizes > 0) & (sizes >= _DEBRIS * sizes.max())
+    return large[labels]

@@ -1,6 +1,7 @@
 """Which cheaper model to blend in, and up to which error."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,28 @@ _WORTH = 0.1
 _ROOM = 2.0 ** (0.5 * np.arange(13))
 
 
-def mixed(judge: Judge, chosen: Rung, known: list[Rung]) -> tuple[Blend | None, Rung | None, float]:
+class Mixed(NamedTuple):
+    """A blend, if one pays.
+
+    Parameters
+    ----------
+    blend : Blend or None
+        The blend.
+    cheaper : Rung or None
+        The model that it takes where that suffices.
+    share : float
+        Share of the vertices where it is taken, alone or in part.
+    milliseconds : float
+        What is spent; on the better model alone where there is no blend.
+    """
+
+    blend: Blend | None
+    cheaper: Rung | None
+    share: float
+    milliseconds: float
+
+
+def mixed(judge: Judge, chosen: Rung, known: list[Rung]) -> Mixed:
     """Return the blend that saves most and suffices.
 
     Parameters
@@ -33,12 +55,12 @@ def mixed(judge: Judge, chosen: Rung, known: list[Rung]) -> tuple[Blend | None, 
 
     Returns
     -------
-    tuple of Blend or None, Rung or None and float
-        With the cheaper model, and what is spent in milliseconds.
+    Mixed
+        With the cheaper model, or without one.
     """
     whole = chosen.milliseconds
     if not (chosen.candidate.model.local and chosen.adequate) or not judge.lights:
-        return None, None, whole
+        return Mixed(None, None, 0.0, whole)
     enough, found = (1.0 - _WORTH) * whole, []
     for rung in known:
         least = _least(judge, rung)  # where the better one is needed nowhere
@@ -49,11 +71,12 @@ def mixed(judge: Judge, chosen: Rung, known: list[Rung]) -> tuple[Blend | None, 
         if blend.exposure is None:  # its colour tells nothing, where it is not seen
             spent -= float(np.mean(weights == 1.0)) * rung.milliseconds
         if spent < enough:
-            found.append((spent, rung, blend))
-    for spent, rung, blend in sorted(found, key=lambda one: one[0]):
-        if judge.suffices(blend):
-            return blend, rung, spent
-    return None, None, whole
+            found.append(Mixed(blend, rung, float(np.mean(weights < 1.0)), spent))
+    for one in sorted(found, key=lambda one: one.milliseconds):
+        assert one.blend is not None
+        if judge.suffices(one.blend):
+            return one
+    return Mixed(None, None, 0.0, whole)
 
 
 def _least(judge: Judge, rung: Rung) -> float:

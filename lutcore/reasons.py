@@ -47,7 +47,7 @@ def _chosen(choice: "Choice") -> str:
         saved = choice.milliseconds / chosen.milliseconds
         return (
             f"{choice.cheaper.candidate.label} is predicted to suffice on "
-            f"{_percent(choice.cheaper.share)} of the vertices ({measure}), {label} is blended in "
+            f"{_percent(choice.cheaper_share)} of the vertices ({measure}), {label} is blended in "
             f"on the rest, for {saved:.2g} times the cost of {label} alone"
         )
     if chosen.adequate and (chosen.candidate.model.local or any(one.adequate for one in local)):
@@ -60,11 +60,6 @@ def _chosen(choice: "Choice") -> str:
             f"{words}; {best.candidate.label} suffices on {_percent(best.best_share)} of the "
             "vertices, and no cheaper one on more"
         )
-    larger = (
-        f"by prediction a body {choice.enough:.2g} times as large would do with a local one"
-        if choice.enough
-        else "by prediction no larger body would do with a local one"
-    )
     if not local:
         return f"{label} is all there is to choose"
     best = max(local, key=lambda rung: rung.best_share)
@@ -73,8 +68,22 @@ def _chosen(choice: "Choice") -> str:
         f"{_percent(best.best_share)} of the vertices"
     )
     if chosen.adequate:
-        return f"{no_local}; {label} suffices, gathering the light of the whole mesh; {larger}"
-    return f"nothing suffices, {label} comes closest ({_scored(chosen)}); {no_local}; {larger}"
+        return (
+            f"{no_local}; {label} suffices, gathering the light of the whole mesh{_larger(choice)}"
+        )
+    return (
+        f"nothing suffices, {label} comes closest ({_scored(chosen)}); {no_local}{_larger(choice)}"
+    )
+
+
+def _larger(choice: "Choice") -> str:
+    if choice.enough is not None:
+        times = f"{choice.enough:.2g} times"
+        return f"; by prediction a body {times} as large would do with a local one"
+    foreseen = choice.by_prediction
+    if foreseen.predicted and foreseen.candidate.model.local:
+        return ""
+    return "; by prediction no larger body would do with a local one"
 
 
 def _scored(rung: "Rung") -> str:

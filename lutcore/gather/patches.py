@@ -19,6 +19,8 @@ _DEEPEST = 5
 # Over a triangle whose longest edge is as long as the shortest l_u light may bend by so much more
 # than the error allowed: its power is kept, and the profile tells little more there.
 _BLURRED = 64.0
+# l_u counts up to this share of the mesh's diagonal.
+_WIDE = 0.1
 _STACK = 3 * _DEEPEST + 4
 _CHUNK = 256
 _BITS = 64
@@ -74,6 +76,8 @@ def patches(inputs: ShadingInputs, tolerance: float = 0.0) -> Patches:
     light = at_vertices(on)
     mean = light.sum(axis=0) / np.maximum(np.count_nonzero(light, axis=0), 1)
     shortest = float(inputs.material.mean_free_path.min()) / inputs.mm_per_unit
+    # Where light crosses the body, its shape tells more than the profile.
+    shortest = min(shortest, _WIDE * float(np.linalg.norm(np.ptp(inputs.points, axis=0))))
     rule = _Rule(_DEVIATION * mean, _BLURRED * tolerance / _DEVIATION * shortest**2)
     cuts, count, added = _count(on, rule, light)
     start = np.cumsum(count) - count
@@ -159,7 +163,9 @@ def _lift(part: FloatArray, added: FloatArray) -> bool:
         mean = (part[0, c] + part[1, c] + part[2, c]) / 3.0
         whole, least = mean + added[c - 2], min(part[0, c], part[1, c], part[2, c])
         share = 1.0
-        if whole > 0.0 > least + added[c - 2]:
+        if whole <= 0.0:  # dark but for a corner
+            whole = share = 0.0
+        elif least + added[c - 2] < 0.0:
             share = whole / (mean - least)
         for j in range(3):
             part[j, c] = max(whole + share * (part[j, c] - mean), 0.0)

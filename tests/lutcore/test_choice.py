@@ -53,7 +53,7 @@ def test_large_bodies_need_less(checked: bool) -> None:
     ball, ladder = analytic.sphere(3000), models()
     chosen = [
         choose(inputs_on(ball, mm), Tolerance(0.02), COSTS, ladder, checked=checked)
-        for mm in (10_000.0, 30.0 if checked else 60.0, 4.0)
+        for mm in (10_000.0, 28.0 if checked else 60.0, 4.0)
     ]
     labels = [one.chosen.candidate.label for one in chosen]
     assert labels == ["lambert (fresnel directional)", "curvature-lut", "jensen2002"]

@@ -12,7 +12,7 @@ from lutcore.gather.entering import at_vertices, surface
 from lutcore.gather.exitance import exact, gathered
 from lutcore.gather.kernel import kernel, place, radial
 from lutcore.gather.octree import octree
-from lutcore.gather.patches import patches, power_of
+from lutcore.gather.patches import _lift, patches, power_of
 from lutcore.geometry import area_normals, face_areas, vertex_areas, vertex_corners
 from lutcore.lights import DirectionalLight, PointLight, pack
 from lutcore.materials import material
@@ -256,3 +256,21 @@ def test_patches_of_a_rough_surface_keep_its_power():
     # Exact to the second order, and so far better than what the corners alone tell: of either sign
     # over the triangles, it cancels in part.
     assert np.abs(found / truth - 1.0).max() < 0.25 * np.abs(linear / truth - 1.0).max()
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-3])
+def test_a_coarse_body_that_light_crosses_keeps_the_tolerance(tolerance):
+    # l_u is 13 mesh units, the tube 4 thick, and its triangles 3 long.
+    mesh = analytic.torus(200, major=10.0, minor=4.0).mesh
+    normals = area_normals(mesh, vertex_corners(mesh))
+    inputs = inputs_of(mesh, normals, COLORED, mm_per_unit=0.05)
+    assert relative(gathered(inputs, tolerance), exact(inputs, mesh.vertices)) < tolerance
+
+
+def test_patches_that_are_dark_but_for_a_corner_stay_so():
+    part = np.zeros((3, 5))
+    part[0, 2], part[:, 3] = 1.0, 0.5
+    # In red the middles of the edges are dark: all three lie 1/3 below what the corners tell.
+    assert _lift(part, np.array([-1.0 / 3.0, 0.0, 0.0]))
+    np.testing.assert_allclose(part[:, 2], 0.0, atol=1e-15)
+    np.testing.assert_array_equal(part[:, 3], 0.5)
