@@ -39,7 +39,7 @@ _LOST = 0.25
 # So many vertices tell at the least, with none beyond the tolerance, at each stage.
 _LEAST = 600
 _QUANTILE = 0.99
-# About 600 bytes each, more where light varies within the triangles.
+# Up to 760 bytes each, more where light varies within the triangles.
 _MOST = 4_000_000
 
 

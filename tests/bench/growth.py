@@ -4,9 +4,7 @@
 
 A regular torus with 2 % noise. Times a vertex are the least of some calls on a mesh in memory, as
 shares of the first size's in the same run. Memory is what a call needs beyond the mesh and the
-interpreter, at its peak, in a process of its own, for the torus without noise. A call on a large
-mesh gets that memory anew from the kernel, which a small one finds in its process: the column of
-pages is what one thread waits for as much, beyond writing to it once more. The last line is of
+interpreter, at its peak, in a process of its own, for the torus without noise. The last line is of
 one mesh, ``--shuffled`` gives its size, with its vertices and faces in random order. ``--largest``
 adds 3 and 10 million vertices.
 """
@@ -57,17 +55,6 @@ def times_per_vertex(meshes: dict[str, TriangleMesh], repeats: int) -> dict[str,
     return found
 
 
-def pages(count: int, each: float) -> float:
-    """Return ns a vertex that supplying memory takes, for so many bytes each."""
-    fresh = np.empty(int(count * each), np.uint8)
-    taken = []
-    for _ in range(2):
-        before = time.perf_counter()
-        fresh.fill(1)
-        taken.append(time.perf_counter() - before)
-    return 1e9 * (taken[0] - taken[1]) / count
-
-
 def report(sizes: list[int], random_size: int, repeats: int) -> dict[str, dict[str, list[float]]]:
     """Return, by method, time a vertex over the first size's, bytes a vertex, and random order."""
     meshes = {str(size): torus(size).noisy(NOISE) for size in sizes}
@@ -77,12 +64,10 @@ def report(sizes: list[int], random_size: int, repeats: int) -> dict[str, dict[s
     table = {}
     for method, row in seconds.items():
         first = row[str(sizes[0])]
-        memory = [peak_memory(size, method) for size in sizes]
         table[method] = {
             "nanoseconds_per_vertex": [1e9 * row[str(size)] for size in sizes],
             "time_of_first": [row[str(size)] / first for size in sizes],
-            "bytes_per_vertex": memory,
-            "pages_ns": [pages(*one) for one in zip(sizes, memory, strict=True)],
+            "bytes_per_vertex": [peak_memory(size, method) for size in sizes],
             "shuffled_of_ordered": [row["shuffled"] / row["ordered"]],
         }
     return table
@@ -105,12 +90,10 @@ def main() -> None:
         print(json.dumps({"sizes": sizes, "shuffled": options.shuffled, **found}))
         return
     for method, row in found.items():
-        print(
-            f"{method}: vertices, ns a vertex, over that of the first, bytes a vertex, ns of pages"
-        )
-        names = ("nanoseconds_per_vertex", "time_of_first", "bytes_per_vertex", "pages_ns")
-        for size, *figures in zip(sizes, *(row[name] for name in names), strict=True):
-            print(f"  {size:10,}", "{:8.0f} {:6.2f} {:6.0f} {:6.0f}".format(*figures))
+        print(f"{method}: vertices, ns a vertex, over that of the first, bytes a vertex")
+        columns = (row["nanoseconds_per_vertex"], row["time_of_first"], row["bytes_per_vertex"])
+        for size, nanoseconds, ratio, memory in zip(sizes, *columns, strict=True):
+            print(f"  {size:10,} {nanoseconds:8.0f} {ratio:6.2f} {memory:6.0f}")
         ratio = row["shuffled_of_ordered"][0]
         print(f"  in random order, {options.shuffled:,} vertices, over the good order: {ratio:.2f}")
 
