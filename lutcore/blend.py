@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from lutcore.arrays import FloatArray
 from lutcore.color_bound import color_bound
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel, exitance
+from lutcore.shading import ShadingInputs, ShadingModel
 from lutcore.tolerance import relative
 
 # The blend begins where the predicted error is this share of the tolerance.

@@ -12,10 +12,11 @@ from lutcore.choice import Choice, choose
 from lutcore.color import auto_exposure
 from lutcore.costs import COLORS, PREDICTION, Candidate, Cost
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact
 from lutcore.lights import DirectionalLight
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, exitance, model_registry, shading_inputs
+from lutcore.shading import ShadingInputs, model_registry, shading_inputs
 from lutcore.tolerance import Tolerance, color_distances
 
 LIGHTS = [DirectionalLight((0.6, 0.3, 0.74)), DirectionalLight((-0.9, 0.1, 0.2), 0.4)]

@@ -9,9 +9,10 @@ from lutcore.analytic import Exact
 from lutcore.arrays import FloatArray
 from lutcore.checking import CONFIDENCE, STAGES, Check, Checked
 from lutcore.errors import CancelledError
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact, gathered
 from lutcore.lights import DirectionalLight
-from lutcore.shading import ShadingInputs, exitance, model_registry, shading_inputs
+from lutcore.shading import ShadingInputs, model_registry, shading_inputs
 from lutcore.tolerance import Tolerance, color_distances, relative
 
 LIGHT = DirectionalLight((0.6, 0.3, 0.74))

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from lutcore.baking import bake
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.exitance import shade
 from lutcore.fresnel import hinges, mean_transmittance, transmittance
 from lutcore.lights import ConeLight, DirectionalLight, Light, PointLight
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
 from lutcore.prediction import Scene
-from lutcore.shading import model_registry, shade, shading_inputs, shading_models
+from lutcore.shading import model_registry, shading_inputs, shading_models
 from tests.plugins.shading_violations import ENERGY, LAMBERT, MONOTONE, cases
 from tests.surfaces import bent, sphere, torus
 

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from lutcore import analytic
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight, PointLight
-from lutcore.shading import shade, shading_models
+from lutcore.shading import shading_models
 
 LIGHTS = [
     DirectionalLight((1.0, 0.3, 0.5), (1.0, 0.9, 0.8)),
