@@ -33,7 +33,8 @@ def torus() -> ShadingInputs:
     return inputs_on(analytic.torus(3000, major=3.0, minor=1.0))
 
 
-def test_of_a_small_mesh_every_vertex_is_judged(torus: ShadingInputs) -> None:
+def test_of_a_small_mesh_every_vertex_is_judged() -> None:
+    torus = inputs_on(analytic.torus(1500, major=3.0, minor=1.0))
     given = exitance(model_registry.get("lambert")(), torus)
     off = relative(np.abs(given - exact(torus, torus.points)) / torus.table.total, ONE)
     score = float(np.percentile(off, 99.0))
