@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, read_only
 from lutcore.error_terms import Known, Spread, Where, around, errors, irradiances
 from lutcore.fresnel import hinges_of, transmittance
 from lutcore.lut import PsiTable
@@ -189,7 +189,7 @@ class Scene:
         """
         return replace(
             self,
-            points=self.points[chosen],
+            points=read_only(self.points[chosen]),
             normals=self.normals[chosen],
             curvatures=self.curvatures[chosen],
             directions=self.directions[chosen],
