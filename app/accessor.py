@@ -134,8 +134,9 @@ class CurvelightAccessor:
         from app.costs import measured
         from lutcore.detail import detail_seen
         from lutcore.estimation import principal_curvatures
+        from lutcore.exitance import exitance
         from lutcore.parameters import create
-        from lutcore.shading import AUTO, exitance, model_registry, shading_inputs
+        from lutcore.shading import AUTO, model_registry, shading_inputs
 
         if shadows not in get_args(Shadows):
             raise ParameterError.unknown("shadows", shadows, get_args(Shadows))

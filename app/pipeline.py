@@ -56,7 +56,7 @@ class Pipeline(Scenes):
     ) -> FloatArray:
         from dataclasses import replace
 
-        from lutcore.shading import exitance
+        from lutcore.exitance import exitance
 
         settled = self.settled(session, model, axes)
         curved = settled.curved or not settled.local

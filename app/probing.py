@@ -178,8 +178,9 @@ def with_readings(
     """
     from app.camera import axes
     from lutcore.blend import at
+    from lutcore.exitance import exitance
     from lutcore.prediction import Scene
-    from lutcore.shading import exitance, shading_models
+    from lutcore.shading import shading_models
     from lutcore.tolerance import relative
 
     frame = axes(camera)

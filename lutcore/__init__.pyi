@@ -9,6 +9,7 @@ from .errors import MeshError as MeshError
 from .errors import ParameterError as ParameterError
 from .estimation import estimators as estimators
 from .estimation import principal_curvatures as principal_curvatures
+from .exitance import shade as shade
 from .lights import ConeLight as ConeLight
 from .lights import DirectionalLight as DirectionalLight
 from .lights import PointLight as PointLight
@@ -16,5 +17,4 @@ from .materials import Material as Material
 from .materials import material as material
 from .materials import materials as materials
 from .mesh import TriangleMesh as TriangleMesh
-from .shading import shade as shade
 from .shading import shading_models as shading_models

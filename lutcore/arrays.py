@@ -1,6 +1,6 @@
 """Array types, and the checks that every array from outside passes."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,7 @@ FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
 BoolArray = NDArray[np.bool_]
 AnyArray = NDArray[Any]
+T = TypeVar("T", bound=np.generic)
 
 
 def finite(name: str, value: ArrayLike, *shapes: tuple[int, ...]) -> FloatArray:
@@ -47,6 +48,27 @@ def finite(name: str, value: ArrayLike, *shapes: tuple[int, ...]) -> FloatArray:
     if not np.isfinite(array).all():
         raise ParameterError(f"{name} = {value!r} is not finite")
     return array
+
+
+def read_only(array: NDArray[T]) -> NDArray[T]:
+    """Return an array as one that cannot be written to.
+
+    Code is compiled apart for arrays that can be and arrays that cannot: those that compiled
+    functions often get are always the one or the other.
+
+    Parameters
+    ----------
+    array : ndarray
+        Any.
+
+    Returns
+    -------
+    ndarray
+        A view of it.
+    """
+    view = array.view()
+    view.setflags(write=False)
+    return view
 
 
 def unit_vector(name: str, value: ArrayLike) -> FloatArray:

@@ -25,8 +25,8 @@ INTERIOR = len(_RINGS)
 _LEAST_CLASS = 30
 # Passes over one-rings that average the energies: a Gaussian of two spacings.
 _PASSES = 8
-# Bands that one loop averages together.
-_TOGETHER = 4
+# Bands that one loop averages together; constant columns become vector instructions.
+_TOGETHER = 12
 # Stands for no energy at all, mesh sizes being about 1.
 _NONE = 1e-30
 # Bounds of the areas over their median that noise follows.
@@ -92,17 +92,19 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     start, neighbour = on.operator.start, on.operator.neighbour
     middle = len(smoothed.scales) // 2
     count = len(smoothed.scales) - 1
-    # Filled up with zeros to columns that one loop averages together.
-    columns = _TOGETHER * ((count + 1) // _TOGETHER + 1)
-    energy = np.empty((len(on.areas), columns), np.float32)
-    _energies(smoothed.tensors, on.areas / on.spacing**2, middle, energy)
-    spare = np.empty_like(energy)
+    # Areas and lean are averaged along; filled up with zeros.
+    groups = (count + 1) // _TOGETHER + 1
+    table = np.empty((groups, len(on.areas), _TOGETHER), np.float32)
+    _energies(smoothed.tensors, on.areas / on.spacing**2, middle, table)
+    spare = np.empty_like(table)
     links = (start.view(np.uint32), neighbour.view(np.uint32))
     for _ in range(_PASSES):
-        _average(*links, energy, spare)
-        energy, spare = spare, energy
-    room, lean = np.clip(energy[:, count], *_ROOM), energy[:, count + 1].copy()
-    energy = np.ascontiguousarray(energy[:, :count])
+        for group in range(groups):
+            _average(*links, table[group], spare[group])
+        table, spare = spare, table
+    columns = table[0] if groups == 1 else np.concatenate(table, axis=1)
+    room, lean = np.clip(columns[:, count], *_ROOM), columns[:, count + 1].copy()
+    energy = np.ascontiguousarray(columns[:, :count])
     place = _places(start, neighbour, on.operator.rim)
     noise = _noise(energy, room, place, np.array(smoothed.scales) / on.spacing)
     # Beyond the last band the noise goes on fading as it did between the last two.
@@ -147,17 +149,18 @@ def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArr
 
 
 @compiled(parallel=True)
-def _energies(tensors: SingleArray, areas: FloatArray, middle: int, energy: SingleArray) -> None:
+def _energies(tensors: SingleArray, areas: FloatArray, middle: int, table: SingleArray) -> None:
     """Write half the squared change of k1 and k2 from each scale to the next, areas, and lean.
 
     To first order k1 and k2 change by the entries of the difference on the diagonal of the
     principal frame, and by the one off it only where k1 and k2 are closer than it is large.
     """
     count, scales = tensors.shape[0], tensors.shape[1] - 1
+    width = table.shape[2]
     for i in prange(count):
-        energy[i, scales] = areas[i]
-        for band in range(scales + 1, energy.shape[1]):
-            energy[i, band] = 0.0
+        table[scales // width, i, scales % width] = areas[i]
+        for band in range(scales + 1, table.shape[0] * width):
+            table[band // width, i, band % width] = 0.0
         k1, k2, c, s = principal(
             tensors[i, middle, 0], tensors[i, middle, 1], tensors[i, middle, 2]
         )
@@ -172,9 +175,11 @@ def _energies(tensors: SingleArray, areas: FloatArray, middle: int, energy: Sing
             across = cosine * xy - sine * half
             size = 4.0 * (along * along + across * across)
             mixed = size / (gap + size + 1e-300)
-            energy[i, band] = mean * mean + along * along + mixed * across * across
+            energy = mean * mean + along * along + mixed * across * across
+            table[band // width, i, band % width] = energy
             if band == scales - 1:
-                energy[i, scales + 1] = 2.0 * mean * along
+                after = scales + 1
+                table[after // width, i, after % width] = 2.0 * mean * along
 
 
 @compiled(parallel=True, packed=True)
@@ -184,20 +189,40 @@ def _average(
     values: SingleArray,
     out: SingleArray,
 ) -> None:
-    """Write the mean of each vertex and its neighbours, four bands at a time."""
+    """Write the mean of each vertex and its neighbours, in `_TOGETHER` columns."""
     for i in prange(len(values)):
         share = np.float32(1.0) / np.float32(1 + start[i + 1] - start[i])
-        for band in range(0, values.shape[1], _TOGETHER):
-            s0, s1 = values[i, band], values[i, band + 1]
-            s2, s3 = values[i, band + 2], values[i, band + 3]
-            for at in range(start[i], start[i + 1]):
-                j = neighbour[at]
-                s0 += values[j, band]
-                s1 += values[j, band + 1]
-                s2 += values[j, band + 2]
-                s3 += values[j, band + 3]
-            out[i, band], out[i, band + 1] = share * s0, share * s1
-            out[i, band + 2], out[i, band + 3] = share * s2, share * s3
+        s0, s1, s2, s3 = values[i, 0], values[i, 1], values[i, 2], values[i, 3]
+        s4, s5, s6, s7 = values[i, 4], values[i, 5], values[i, 6], values[i, 7]
+        s8, s9, s10, s11 = values[i, 8], values[i, 9], values[i, 10], values[i, 11]
+        for at in range(start[i], start[i + 1]):
+            j = neighbour[at]
+            s0, s1, s2, s3 = (
+                s0 + values[j, 0],
+                s1 + values[j, 1],
+                s2 + values[j, 2],
+                s3 + values[j, 3],
+            )
+            s4, s5, s6, s7 = (
+                s4 + values[j, 4],
+                s5 + values[j, 5],
+                s6 + values[j, 6],
+                s7 + values[j, 7],
+            )
+            s8, s9, s10, s11 = (
+                s8 + values[j, 8],
+                s9 + values[j, 9],
+                s10 + values[j, 10],
+                s11 + values[j, 11],
+            )
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = share * s0, share * s1, share * s2, share * s3
+        out[i, 4], out[i, 5], out[i, 6], out[i, 7] = share * s4, share * s5, share * s6, share * s7
+        out[i, 8], out[i, 9], out[i, 10], out[i, 11] = (
+            share * s8,
+            share * s9,
+            share * s10,
+            share * s11,
+        )
 
 
 def _places(start: IndexArray, neighbour: IndexArray, rim: BoolArray) -> NDArray[np.int8]:

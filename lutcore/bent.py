@@ -160,9 +160,9 @@ def bent_exitance(
         inputs.normals,
         inputs.shape,
         inputs.lights,
-        total,
-        length,
-        # Always a new array: one that cannot be written to would be compiled for apart.
+        # Always new arrays: those that cannot be written to would be compiled for apart.
+        total.copy(),
+        length.copy(),
         np.ones(3) if eta is None else eta.copy(),
         np.stack([table.coefficients for table in tables]),
         np.array([table.scale for table in tables]),

@@ -6,11 +6,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, read_only
 from lutcore.color_bound import color_bound
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel, exitance
+from lutcore.shading import ShadingInputs, ShadingModel
 from lutcore.tolerance import relative
 
 # The blend begins where the predicted error is this share of the tolerance.
@@ -152,17 +153,19 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
     ShadingInputs
         Of m vertices, without curvatures.
     """
+    # As models get them of whole meshes, read-only points and rows in order: what is compiled for
+    # those serves here. Indexing behind the first axis would leave rows in another order.
     detail, seen, soft = inputs.detail, inputs.visibility, inputs.softened
     if detail is not None:
         detail = replace(
             detail,
-            normals=detail.normals[:, chosen],
-            shape=detail.shape[:, chosen],
+            normals=detail.normals.take(chosen, axis=1),
+            shape=detail.shape.take(chosen, axis=1),
             bare=detail.bare[chosen],
         )
     return replace(
         inputs,
-        points=inputs.points[chosen],
+        points=read_only(inputs.points[chosen]),
         normals=inputs.normals[chosen],
         shape=inputs.shape[chosen],
         visibility=None if seen is None else seen[:, chosen],

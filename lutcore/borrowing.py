@@ -125,29 +125,28 @@ def _update(
     now, known = state
     after = np.empty((len(members), 7))
     counts = np.zeros(len(members), np.int32)
-    total = np.empty(7)
     for m in range(len(members)):
         w = members[m]
-        total[:] = 0.0
+        xx = xy = xz = yy = yz = zz = squares = 0.0
         for at in range(start[weak[w]], start[weak[w] + 1]):
             j = neighbour[at]
             other = number[j]
             if other < 0:
-                counts[m] += 1
-                xx, xy, xz, yy, yz, zz = in_space(normals[j], tensors[j])
-                total[0], total[1], total[2] = total[0] + xx, total[1] + xy, total[2] + xz
-                total[3], total[4], total[5] = total[3] + yy, total[4] + yz, total[5] + zz
-                total[6] += square[j]
+                a, b, c, d, e, f = in_space(normals[j], tensors[j])
+                squares += square[j]
             elif known[other]:
-                counts[m] += 1
-                for entry in range(7):
-                    total[entry] += now[other, entry]
-        pull = counts[m] / step
-        for entry in range(6):
-            own = certainty[w] * measured[w, entry]
-            after[m, entry] = (own + total[entry] / step) / (certainty[w] + pull)
+                a, b, c = now[other, 0], now[other, 1], now[other, 2]
+                d, e, f = now[other, 3], now[other, 4], now[other, 5]
+                squares += now[other, 6]
+            else:
+                continue
+            counts[m] += 1
+            xx, xy, xz, yy, yz, zz = xx + a, xy + b, xz + c, yy + d, yz + e, zz + f
+        own, pull = certainty[w], counts[m] / step
+        for entry, total in enumerate((xx, xy, xz, yy, yz, zz)):
+            after[m, entry] = (own * measured[w, entry] + total / step) / (own + pull)
         # Neighbours err alike: together they know no more than one of them does.
-        after[m, 6] = 1.0 / (certainty[w] + 1.0 / (total[6] / max(counts[m], 1) + step))
+        after[m, 6] = 1.0 / (own + 1.0 / (squares / max(counts[m], 1) + step))
     for m in range(len(members)):
         w = members[m]
         if counts[m] > 0:

@@ -19,10 +19,11 @@ import numpy as np
 from lutcore.arrays import AnyArray, FloatArray
 from lutcore.blend import at
 from lutcore.color import auto_exposure
+from lutcore.exitance import bared
 from lutcore.gather.exitance import Hierarchy, hierarchy
 from lutcore.open_mesh import light_lost
 from lutcore.progress import part
-from lutcore.shading import ShadingInputs, bared
+from lutcore.shading import ShadingInputs
 from lutcore.tolerance import Tolerance, color_distances, relative
 
 STAGES = (1024, 4096, 16384)

@@ -9,9 +9,10 @@ from lutcore.blend import Blend
 from lutcore.checking import Checked, Coverage
 from lutcore.costs import Candidate, Cost, candidates
 from lutcore.errors import ParameterError
+from lutcore.exitance import without_shadows
 from lutcore.judging import Judge, Rung
 from lutcore.mixing import mixed
-from lutcore.shading import ShadingInputs, ShadingModel, without_shadows
+from lutcore.shading import ShadingInputs, ShadingModel
 from lutcore.table_size import samples_needed, with_samples
 from lutcore.tolerance import Tolerance
 

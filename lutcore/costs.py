@@ -9,13 +9,13 @@ import numpy as np
 
 from lutcore.color_bound import color_bound
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.parameters import Parameters
 from lutcore.prediction import Knowledge, Scene
 from lutcore.progress import Progress, silent, tell
 from lutcore.shading import (
     ShadingInputs,
     ShadingModel,
-    exitance,
     model_registry,
     shading_inputs,
     shading_models,

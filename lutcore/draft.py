@@ -59,7 +59,7 @@ class Draft:
         Returns
         -------
         ndarray, shape=(n, 3)
-            As `lutcore.shading.exitance` without visibility, to .0015 R_d of unit light; that is
+            As `lutcore.exitance.exitance` without visibility, to .0015 R_d of unit light; that is
             .45/255 of what is shown where 1 is white.
         """
         return _exitance(self.points, self.surface, self.kept, self.halfway, self.cells, lights)

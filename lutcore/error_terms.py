@@ -16,8 +16,6 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
 
 - first: |G(b) - G(b')|, b' the bending that the model follows;
 - second: X; anisotropy: its part with (k1 - k2)^2, for models that know one curvature;
-- change: X where curvature is what its gradient makes of it within reach, q^2/(1 + q^2) (E + G),
-  q = <r^2> |grad(k1 + k2)|;
 - higher: e^2, e = E2/(1 + E2), or that of a ball of the body's volume over its area, where that is
   more: light that goes through the body;
 - third: Y, less what the error bar makes of the gradient; concave: G of the concave part of S;
@@ -210,10 +208,10 @@ def _still(
     turned = reach * both
     beyond = length * length * (_SIZE * _SIZE * both * turned / (1.0 + turned))
     beyond += (DOUBT * length * noise) ** 2 + _CHANGE * _CHANGE * change / square
-    share = parts[1] * e2 + parts[2] * uneven + parts[3] * change / (1.0 + change) + parts[8]
+    share = parts[1] * e2 + parts[2] * uneven + parts[7]
     through = _THROUGH * square * (length / radius) ** 2
     through = max(e2, through / (1.0 + through))
-    everywhere = parts[4] * through * through + parts[10] * e2
+    everywhere = parts[3] * through * through + parts[9] * e2
     h = reach / (reach + facet)
     root, rest = np.sqrt(h), 1.0 - h
     rougher = 2.0 * max(0.0, at[4] - _EXPLAINED * facet * both)
@@ -232,7 +230,7 @@ def _still(
         _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300),
         at[5] * (1.0 - _FARTHER * h) * h / (h + _SEEN),
         s,
-        parts[9] * angle * root * (1.0 - _BLURRED * h),
+        parts[8] * angle * root * (1.0 - _BLURRED * h),
         _TURNED * per_width * angle,
         np.sqrt(facet) / length,
         facet * both,
@@ -285,20 +283,20 @@ def _error(
             error += parts[0] * abs(glow - _glow(a, followed, psi_0, per_width, w, corners))
     # Next to the terminator a mesh and a table resolve no less than elsewhere.
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
-    error += share * lit + everywhere + parts[8] * 1.5 * edge_ * edge_
+    error += share * lit + everywhere + parts[7] * 1.5 * edge_ * edge_
     third = 0.25 * reach * max(0.0, abs(steep) - noise)
-    error += parts[5] * third / (1.0 + third) * _fall(a, beside, per_width)
-    error += parts[6] * _glow(a, np.sqrt(concave), psi_0, per_width, w, corners)
+    error += parts[4] * third / (1.0 + third) * _fall(a, beside, per_width)
+    error += parts[5] * _glow(a, np.sqrt(concave), psi_0, per_width, w, corners)
     width = step * np.sqrt(convex + concave)
     bends = _read(entering, a + width) + _read(entering, a - width) - (2.0 + bent) * straight
     bends /= 1.0 + (bends / CUT) ** 2
     sloped = s * (straight - _read(entering, bare))
     lacking, bent_by = corner * lit, off_by * bends
     unsure = abs(lacking) + abs(sloped) + abs(bent_by)
-    error += parts[7] * (abs(lacking + sloped + bent_by) + UNSURE * unsure)
+    error += parts[6] * (abs(lacking + sloped + bent_by) + UNSURE * unsure)
     error += bumps * _fall(a, _WIDER * beside + turned, per_width)
-    error += parts[11] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
-    return min(max(error, parts[12]), 1.0)
+    error += parts[10] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
+    return min(max(error, parts[11]), 1.0)
 
 
 @compiled(parallel=True)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import prange
 
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
@@ -60,8 +61,23 @@ def facets(points: FloatArray, faces: IndexArray, values: FloatArray) -> Facets:
     slope, bare = np.zeros((len(points), 3)), np.zeros((len(points), 3))
     area, grain, corner = (np.zeros(len(points)) for _ in range(3))
     link = np.zeros(len(points), dtype=np.int32)
-    radius = _collect(points, faces, values, slope, bare, link, area, grain, corner)
+    angles = np.empty((len(faces), 2))
+    _angles(points, faces, angles)
+    radius = _collect(points, faces, values, angles, slope, bare, link, area, grain, corner)
     return Facets(slope, area, bare, grain, corner, radius)
+
+
+@compiled(parallel=True)
+def _angles(points: FloatArray, faces: IndexArray, angles: FloatArray) -> None:
+    """Write the angles at the first two corners of each face."""
+    for face in prange(len(faces)):
+        i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
+        ux, uy, uz = edge(points, i, j)
+        vx, vy, vz = edge(points, i, k)
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        twice = np.sqrt(x * x + y * y + z * z)
+        uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
+        angles[face, 0], angles[face, 1] = np.arctan2(twice, uv), np.arctan2(twice, uu - uv)
 
 
 @compiled()
@@ -69,6 +85,7 @@ def _collect(
     points: FloatArray,
     faces: IndexArray,
     values: FloatArray,
+    angles: FloatArray,
     slope: FloatArray,
     bare: FloatArray,
     link: IndexArray,
@@ -85,7 +102,7 @@ def _collect(
         twice = np.sqrt(nx * nx + ny * ny + nz * nz)
         uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
         vv = vx * vx + vy * vy + vz * vz
-        first, second = np.arctan2(twice, uv), np.arctan2(twice, uu - uv)
+        first, second = angles[face, 0], angles[face, 1]
         corner[i] += first
         corner[j] += second
         corner[k] += np.pi - first - second

@@ -10,14 +10,9 @@ from lutcore.blend import at
 from lutcore.checking import Check, Checked, Coverage
 from lutcore.color import auto_exposure
 from lutcore.costs import Candidate, Cost
+from lutcore.exitance import exitance, without_shadows
 from lutcore.prediction import Scene
-from lutcore.shading import (
-    ShadingInputs,
-    ShadingModel,
-    exitance,
-    model_registry,
-    without_shadows,
-)
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 from lutcore.table_size import with_samples
 from lutcore.tolerance import Tolerance, color_differences, relative
 

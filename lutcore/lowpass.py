@@ -177,6 +177,7 @@ def _jacobi(degree_: int, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return now, before
 
 
+@lru_cache(maxsize=64)
 def series_at(scale: float, bound: float) -> FloatArray:
     """Return the polynomial of a scale, for `filtered`.
 
@@ -190,14 +191,16 @@ def series_at(scale: float, bound: float) -> FloatArray:
     Returns
     -------
     ndarray
-        Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound.
+        Chebyshev coefficients of (p - 1)/y on 0 <= y <= 1, y = L/bound; kept, not to be written.
     """
     strength = 0.5 * scale * scale * bound
     k = max(degree(scale, bound), _LEAST_DEGREE)
     # Degrees are whole numbers: a bound that is larger by as much makes the scale exact.
     ample = max(1.0, float(_strengths()[k]) / strength)
     y = _nodes(2 * k)
-    return _coefficients((_filter(k, y / ample) - 1.0) / y)[:k]
+    found = _coefficients((_filter(k, y / ample) - 1.0) / y)[:k]
+    found.flags.writeable = False
+    return found
 
 
 def series_of(

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.arrays import BoolArray, FloatArray, IndexArray, read_only
 from lutcore.errors import MeshError
 
 
@@ -28,10 +28,8 @@ class TriangleMesh:
     """
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
-        self.vertices: FloatArray = _vertices(vertices)
-        self.faces: IndexArray = _faces(faces, len(self.vertices))
-        self.vertices.setflags(write=False)
-        self.faces.setflags(write=False)
+        self.vertices: FloatArray = read_only(_vertices(vertices))
+        self.faces: IndexArray = read_only(_faces(faces, len(self.vertices)))
 
     @classmethod
     def trusted(cls, vertices: FloatArray, faces: IndexArray) -> "TriangleMesh":
@@ -50,7 +48,7 @@ class TriangleMesh:
             The mesh.
         """
         mesh = cls.__new__(cls)
-        mesh.vertices, mesh.faces = vertices, faces
+        mesh.vertices, mesh.faces = read_only(vertices), read_only(faces)
         return mesh
 
     def __repr__(self) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 from lutcore.arrays import FloatArray
 from lutcore.blend import Blend, blending
 from lutcore.costs import COLORS, PREDICTION
+from lutcore.exitance import exitance
 from lutcore.judging import Judge, Rung
-from lutcore.shading import exitance
 from lutcore.table_size import with_samples
 from lutcore.tolerance import color_distances
 

@@ -16,7 +16,6 @@ which a series in the azimuth is not. No principal direction is needed.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -32,6 +31,7 @@ from lutcore.bent import (
 )
 from lutcore.compiled import compiled
 from lutcore.diffusion import DiffusionProfile, Optics
+from lutcore.keeping import kept
 from lutcore.quadric import Radial, on_patch
 from lutcore.revolution import on_paraboloid
 from lutcore.spline import spline_at, spline_coefficients, spline_weights
@@ -71,7 +71,7 @@ class MongeTable:
     scale: float
 
 
-@lru_cache(maxsize=256)
+@kept
 def bake_monge(profile: DiffusionProfile, optics: Optics) -> MongeTable:
     """Return the table of a channel; the same object for the same arguments.
 
@@ -99,7 +99,6 @@ def bake_monge(profile: DiffusionProfile, optics: Optics) -> MongeTable:
     for row, s in enumerate(bend_knots(scale, LIMIT, _BENDS)[1:], start=1):
         values[row] = _fitted(whole, radial, optics.eta, float(s))
     terms = spline_coefficients(spline_coefficients(values, 0), 1)
-    terms.setflags(write=False)
     return MongeTable(whole, terms, scale)
 
 

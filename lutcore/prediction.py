@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, read_only
 from lutcore.error_terms import Known, Spread, Where, errors, irradiances
 from lutcore.facets import facets
 from lutcore.fresnel import hinges_of, transmittance
@@ -31,7 +31,6 @@ WEIGHTS = {
     "first": 2.49,
     "second": 1.28,
     "anisotropy": 1.24,
-    "change": 0.00168,
     "higher": 2.61,
     "third": 2.17,
     "concave": 0.769,
@@ -197,14 +196,14 @@ class Scene:
         """
         return replace(
             self,
-            points=self.points[chosen],
+            points=read_only(self.points[chosen]),
             normals=self.normals[chosen],
             curvatures=self.curvatures[chosen],
             directions=self.directions[chosen],
             error=self.error[chosen],
             slope=self.slope[chosen],
             facet=self.facet[chosen],
-            shaded=self.shaded[:, chosen],
+            shaded=self.shaded.take(chosen, axis=1),
             bare=self.bare[chosen],
             grain=self.grain[chosen],
             corner=self.corner[chosen],

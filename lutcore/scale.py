@@ -16,7 +16,7 @@ _RUNGS = 2.0 ** (0.5 * np.arange(9.0))
 # Meshes of more vertices try the rungs on patches first.
 _WHOLE = 30_000
 # Vertices of the patches whose choice may fall outside the rungs that are kept.
-_LEFT_OUT = (2.0, 95.0)
+_LEFT_OUT = (2.0, 93.0)
 # A choice this close to a rung, in rungs, is that rung: the nearest.
 _NEAR = 0.5
 # No scale that `auto` tries is longer than this share of the mesh.

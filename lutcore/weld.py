@@ -54,8 +54,9 @@ class Welded:
         """
         if not self.moved:
             return values
-        out = values[self.index]
-        out[self.index < 0] = missing
+        # Rows are copied whole, several times as fast as by indexing; -1 takes the first.
+        out: AnyArray = np.take(values, self.index, axis=0, mode="clip")
+        out[np.flatnonzero(self.index < 0)] = missing
         return out
 
     def gather(self, values: FloatArray) -> FloatArray:

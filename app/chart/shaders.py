@@ -14,17 +14,11 @@ from app.pipeline import Pipeline
 from app.session import Session
 from lutcore import analytic
 from lutcore.arrays import FloatArray, IndexArray
+from lutcore.exitance import bared, exitance
 from lutcore.lights import Light
 from lutcore.parameters import Choice, Number, create, declared
 from lutcore.progress import Progress, silent, tell
-from lutcore.shading import (
-    ShadingInputs,
-    ShadingModel,
-    bared,
-    exitance,
-    model_registry,
-    shading_inputs,
-)
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shading_inputs
 
 _WARM_UP = 400
 _STEPS = 4
@@ -61,7 +55,7 @@ class Scene:
         Returns
         -------
         ndarray, shape=(n, 3)
-            See `lutcore.shading.exitance`.
+            See `lutcore.exitance.exitance`.
         """
         inputs = self.local if model.local else self.gathering
         return exitance(model, replace(inputs, progress=progress))

@@ -68,7 +68,7 @@ def step_seconds(made: Composition, pipeline: Pipeline) -> float:
         0 where there is no light.
     """
     from lutcore.color import product_bytes
-    from lutcore.shading import exitance
+    from lutcore.exitance import exitance
 
     session, frame = made.session, axes(made.camera)
     if not session.lights or made.exposure is None:

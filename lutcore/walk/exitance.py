@@ -31,7 +31,7 @@ class Walked:
     ----------
     exitance : ndarray, shape=(rows, columns)
         Radiant exitance, all that leaves in any direction, per unit irradiance of a surface that
-        faces the light: means over the cells. It compares with what `lutcore.shading.shade`
+        faces the light: means over the cells. It compares with what `lutcore.exitance.shade`
         returns: R_d counts what leaves, and the exit Fresnel factor only shares it out among
         directions.
     error : ndarray, shape=(rows, columns)

@@ -45,12 +45,9 @@ class CorrectedCurvature(EstimatorParameters):
         spacing = typical_spacing(mesh)
         radius = _DEFAULT_SPACINGS * spacing if scale is None else scale
         corners = vertex_corners(mesh)
-        # Compiled for one kind of array only: faces of one mesh may be writable, of another not.
-        faces = mesh.faces.view()
-        faces.setflags(write=False)
         links = neighbours(mesh, corners)
         along = area_normals(mesh, corners)
-        measures = _measures(mesh.vertices, faces, along)
+        measures = _measures(mesh.vertices, mesh.faces, along)
         count = len(mesh.vertices)
         normals, known = np.empty((count, 3)), np.empty(count, np.bool_)
         k, directions = np.empty((2, count)), np.empty((2, count, 3))
@@ -65,7 +62,7 @@ class CorrectedCurvature(EstimatorParameters):
                 min(first + BLOCK, count),
                 radius,
                 mesh.vertices,
-                faces,
+                mesh.faces,
                 corners.start,
                 corners.corner,
                 *links,

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from lutcore.arrays import FloatArray
 from lutcore.choice import choose
 from lutcore.costs import costs
+from lutcore.exitance import exitance
 from lutcore.parameters import choice, param
-from lutcore.shading import AUTO, ShadingInputs, ShadingModel, exitance, model_registry
+from lutcore.shading import AUTO, ShadingInputs, ShadingModel, model_registry
 from lutcore.tolerance import METRICS, Tolerance
 
 

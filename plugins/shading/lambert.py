@@ -33,7 +33,8 @@ class Lambert(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         table = inputs.table
         directional = self.fresnel == "directional"
-        total = table.total if directional else table.total * table.entering
+        # Both are arrays that can be written to, which are compiled for apart from others.
+        total = table.total * (1.0 if directional else table.entering)
         arguments = (inputs.points, inputs.normals, inputs.lights, total)
         return _lambert(*arguments, table.eta, directional)
 

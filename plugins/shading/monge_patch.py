@@ -28,9 +28,9 @@ class MongePatch(ShadingModel):
 
     The integral is a table of four arguments (`lutcore.monge`): within 1e-4 R_d of it where
     sqrt((k1^2 + k2^2)/2) is below .1/l_d, 2e-3 below .5/l_d, 1e-2 beyond, and constant from 2/l_u
-    on; on umbilics within 1e-5 everywhere. It takes about a second a channel to bake. Holds for
-    radii above 3 l_d: where light goes further, a parabola is no longer the surface. Costs some 25
-    times Lambert with F_t(N.w).
+    on; on umbilics within 1e-5 everywhere. It takes about a second a channel to bake, once. Holds
+    for radii above 3 l_d: where light goes further, a parabola is no longer the surface. Costs some
+    25 times Lambert with F_t(N.w).
 
     References
     ----------

@@ -32,6 +32,12 @@ def mesh(tmp_path_factory):
     return str(path)
 
 
+@pytest.fixture(autouse=True)
+def _small_warm_up(monkeypatch):
+    """Let calls that do not count be short."""
+    monkeypatch.setattr("app.chart.shaders._WARM_UP", 30)
+
+
 def chart(mesh, path, *words):
     return main(["chart", mesh, "-o", str(path), *MODELS, *FAST, "--mm-per-unit", "20", *words])
 

@@ -32,12 +32,13 @@ from lutcore.cosmoothing import surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.detail import Detail, detail_seen
 from lutcore.estimation import principal_curvatures
+from lutcore.exitance import shade
 from lutcore.geometry import typical_spacing
 from lutcore.lights import DirectionalLight
 from lutcore.mesh import TriangleMesh
 from lutcore.metrics import ciede2000
 from lutcore.scale import shading_scale
-from lutcore.shading import shade, shading_inputs
+from lutcore.shading import shading_inputs
 from lutcore.weld import weld
 from tests.bumps import bare, bumpy
 

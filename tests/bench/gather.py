@@ -21,12 +21,13 @@ from lutcore import analytic
 from lutcore.analytic import Exact
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diffusion import diffusion_profile
+from lutcore.exitance import shade
 from lutcore.gather.exitance import exact
 from lutcore.geometry import area_normals, vertex_corners
 from lutcore.lights import pack
 from lutcore.materials import material
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import ShadingInputs, shade
+from lutcore.shading import ShadingInputs
 from tests.bench.shading_speed import LIGHTS, best
 from tests.bumps import bare
 

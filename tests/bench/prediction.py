@@ -36,6 +36,7 @@ from lutcore.costs import Candidate, candidates, costs
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.detail import detail_seen
 from lutcore.estimation import principal_curvatures
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact, hierarchy
 from lutcore.lights import DirectionalLight
 from lutcore.materials import Material, material
@@ -44,7 +45,7 @@ from lutcore.open_mesh import light_lost
 from lutcore.prediction import Scene
 from lutcore.progress import silent
 from lutcore.scale import shading_scale
-from lutcore.shading import ShadingInputs, exitance, shading_inputs
+from lutcore.shading import ShadingInputs, shading_inputs
 from lutcore.tolerance import METRICS, Tolerance, color_distances, relative
 from lutcore.visibility import softened, visibility
 from tests.bumps import bare

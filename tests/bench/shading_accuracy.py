@@ -17,10 +17,11 @@ import numpy as np
 
 from lutcore.baking import BETA_FLOOR, bake, bake_plane
 from lutcore.diffusion import Optics, optics
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
 from lutcore.lut import PsiTable, even_form
 from lutcore.materials import material, materials
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 from tests.quadrature import FloatArray, paper_psi, sphere_exitance
 from tests.surfaces import sphere
 

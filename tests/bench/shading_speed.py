@@ -24,9 +24,10 @@ import numpy as np
 import psutil  # type: ignore[import-untyped]
 
 from lutcore.curvature import PrincipalCurvatures
+from lutcore.exitance import shade
 from lutcore.lights import ConeLight, DirectionalLight, Light, PointLight
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 from tests import numpy_shading
 from tests.surfaces import torus
 

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from lutcore.baking import bake
 from lutcore.diffusion import Optics
+from lutcore.exitance import shade
 from lutcore.fresnel import hinges
 from lutcore.halfspace import flat_albedo
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 from tests import walk_truth
 from tests.bodies import Shaded
 from tests.numpy_shading import even_form

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from lutcore.exitance import shade
 from lutcore.gather.exitance import exact
-from lutcore.shading import shade, shading_inputs
+from lutcore.shading import shading_inputs
 from tests import numpy_shading
 from tests.bench.shading_speed import GATHERING, LIGHTS, MODELS, PLAIN, gathering_speeds, speeds
 from tests.surfaces import torus

@@ -1,21 +1,25 @@
 """The blend of two models for tolerances of colour."""
 
 from dataclasses import replace
+from functools import cache
 
+import numba
 import numpy as np
 import pytest
 
 from lutcore import analytic
 from lutcore.arrays import FloatArray
-from lutcore.blend import Blend
+from lutcore.blend import Blend, at
 from lutcore.choice import Choice, choose
 from lutcore.color import auto_exposure
 from lutcore.costs import COLORS, PREDICTION, Candidate, Cost
+from lutcore.detail import detail_seen
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact
 from lutcore.lights import DirectionalLight
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, exitance, model_registry, shading_inputs
+from lutcore.shading import ShadingInputs, model_registry, shading_inputs
 from lutcore.tolerance import Tolerance, color_distances
 
 LIGHTS = [DirectionalLight((0.6, 0.3, 0.74)), DirectionalLight((-0.9, 0.1, 0.2), 0.4)]
@@ -34,6 +38,13 @@ def cigar(mm: float, count: int = 6000) -> ShadingInputs:
     return shading_inputs(body.mesh, body.truth, "skin1", LIGHTS, mm)
 
 
+@cache
+def gathered(mm: float) -> FloatArray:
+    """Return the light that leaves every fifth vertex."""
+    scene = cigar(mm)
+    return exact(scene, scene.points[::5])
+
+
 @pytest.fixture(scope="module")
 def inputs() -> ShadingInputs:
     return cigar(20.0)
@@ -45,6 +56,23 @@ def blended(inputs: ShadingInputs, limit: float) -> tuple[Blend, FloatArray]:
     blend = Blend(CHEAP, GOOD, limit, auto_exposure(exitance(GOOD, inputs)))
     scene = Scene.of(inputs, inputs.curvatures)
     return blend, blend.weights(scene, exitance(CHEAP, inputs))
+
+
+def test_what_is_compiled_for_all_vertices_serves_for_some() -> None:
+    body = analytic.torus(500, major=20.0, minor=8.0)
+    seen = detail_seen(body.mesh, "skin1")
+    inputs = shading_inputs(body.mesh, body.truth, "skin1", LIGHTS, detail=seen)
+    chosen = np.arange(0, len(body.mesh.vertices), 3)
+    some, scene = at(inputs, chosen), Scene.of(inputs, body.truth)
+    pairs = [
+        (getattr(some, name), getattr(inputs, name)) for name in ("points", "normals", "shape")
+    ]
+    assert some.detail is not None
+    for field in ("normals", "shape"):
+        pairs += zip(getattr(some.detail, field), getattr(seen, field), strict=True)
+    pairs.append((scene.at(chosen).points, scene.points))
+    for one, other in pairs:
+        assert numba.typeof(one) == numba.typeof(other)
 
 
 def test_it_leaves_no_seam_that_is_seen(inputs: ShadingInputs) -> None:
@@ -103,7 +131,7 @@ def test_it_is_chosen_where_it_pays_and_meets_the_tolerance(
     assert choice.blend.exposure is not None
     assert choice.milliseconds < 0.9 * choice.chosen.milliseconds
     assert "blended in on the rest" in choice.sentence
-    truth = exact(scene, scene.points[::5])
+    truth = gathered(mm)
     off = color_distances(exitance(choice.model, scene)[::5], truth, auto_exposure(truth))
     assert tolerance.score(off) <= value
     assert chosen(scene, tolerance, checked).model == choice.model

@@ -11,9 +11,10 @@ from lutcore.blend import Blend, at
 from lutcore.choice import choose
 from lutcore.costs import COLORS, PREDICTION, Candidate, Cost, candidates
 from lutcore.errors import ParameterError
+from lutcore.exitance import exitance
 from lutcore.lights import DirectionalLight
 from lutcore.prediction import Scene
-from lutcore.shading import ShadingInputs, ShadingModel, exitance, model_registry, shading_inputs
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shading_inputs
 from lutcore.tolerance import Tolerance
 
 # As on one machine, ns.

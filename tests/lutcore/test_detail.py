@@ -9,6 +9,7 @@ from lutcore.cosmoothing import surface
 from lutcore.detail import detail_seen
 from lutcore.errors import CancelledError, ParameterError
 from lutcore.estimation import principal_curvatures
+from lutcore.exitance import exitance, shade
 from lutcore.gather.exitance import exact
 from lutcore.geometry import typical_spacing
 from lutcore.lights import DirectionalLight
@@ -16,7 +17,7 @@ from lutcore.lowpass import series_of
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
 from lutcore.scale import shading_scale
-from lutcore.shading import exitance, shade, shading_inputs
+from lutcore.shading import shading_inputs
 from plugins.shading.lambert import Lambert
 from tests.bumps import bare, bumpy
 

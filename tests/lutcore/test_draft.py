@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from lutcore.detail import detail_seen
+from lutcore.exitance import exitance
 from lutcore.lights import ConeLight, DirectionalLight, PointLight
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import exitance, model_registry, shading_inputs
+from lutcore.shading import model_registry, shading_inputs
 from plugins.shading.curvature_lut import CurvatureLut
 from tests.surfaces import torus
 

@@ -217,7 +217,7 @@ def test_triangles_without_an_area_change_nothing():
     body = analytic.sphere(500, radius=10.0)
     more = np.concatenate([body.mesh.faces, [[7, 7, 8], [9, 9, 9]]])
     inputs = inputs_of(body.mesh, body.truth.normals)
-    padded = dataclasses.replace(inputs, faces=more.astype(np.int32))
+    padded = dataclasses.replace(inputs, faces=TriangleMesh(inputs.points, more).faces)
     assert relative(gathered(padded, DEFAULT), gathered(inputs, DEFAULT)) < DEFAULT
     points = body.mesh.vertices[::100]
     np.testing.assert_allclose(exact(padded, points), exact(inputs, points), rtol=1e-9)

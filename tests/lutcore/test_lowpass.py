@@ -54,7 +54,7 @@ def test_quadratics_pass(k):
 
 @pytest.mark.parametrize("make", [analytic.torus, analytic.saddle])
 def test_the_recurrence_gives_the_polynomial_of_the_matrix(make):
-    on = surface(make(600, irregular=True).mesh)
+    on = surface(make(300, irregular=True).mesh)
     scales = [1.5 * on.spacing, 6.0 * on.spacing]
     change = low_pass(on.operator, on.fields, scales)
     values, left = np.linalg.eig(matrix(on))

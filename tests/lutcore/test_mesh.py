@@ -1,3 +1,4 @@
+import numba
 import numpy as np
 import pytest
 
@@ -16,6 +17,13 @@ def test_a_mesh_keeps_a_checked_copy_that_nobody_can_change():
     assert mesh.vertices.max() == 1.0
     with pytest.raises(ValueError, match="read-only"):
         mesh.vertices[0, 0] = 2.0
+
+
+def test_what_is_compiled_for_a_checked_mesh_serves_for_a_trusted_one():
+    checked = TriangleMesh(TRIANGLE, [[0, 1, 2]])
+    trusted = TriangleMesh.trusted(checked.vertices.copy(), checked.faces.copy())
+    assert numba.typeof(trusted.vertices) == numba.typeof(checked.vertices)
+    assert numba.typeof(trusted.faces) == numba.typeof(checked.faces)
 
 
 @pytest.mark.parametrize(

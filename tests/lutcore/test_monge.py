@@ -6,6 +6,7 @@ import pytest
 from lutcore.baking import glowing
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diffusion import diffusion_profile, diffusion_profiles, optics
+from lutcore.exitance import shade
 from lutcore.fresnel import transmittance
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
@@ -13,7 +14,6 @@ from lutcore.mesh import TriangleMesh
 from lutcore.monge import LIMIT
 from lutcore.quadric import Radial, on_patch
 from lutcore.revolution import on_paraboloid
-from lutcore.shading import shade
 from tests.quadrature import FloatArray, dipole
 from tests.surfaces import bent
 

@@ -12,9 +12,10 @@ from lutcore.baking import bake
 from lutcore.convexity import bending, invariants
 from lutcore.diffusion import diffusion_profile
 from lutcore.errors import ParameterError
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
 from lutcore.progress import silent
-from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shade, shading_models
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shading_models
 from tests.surfaces import torus
 
 LIGHT = DirectionalLight((1.0, 2.0, 3.0))

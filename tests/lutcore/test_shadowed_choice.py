@@ -9,18 +9,12 @@ from lutcore import analytic
 from lutcore.checking import Check
 from lutcore.choice import choose
 from lutcore.costs import COLORS, PREDICTION, Candidate, Cost, candidates
+from lutcore.exitance import exitance, shade, without_shadows
 from lutcore.gather.exitance import gathered
 from lutcore.lights import DirectionalLight, Light
 from lutcore.mesh import TriangleMesh
 from lutcore.prediction import Scene
-from lutcore.shading import (
-    ShadingInputs,
-    exitance,
-    model_registry,
-    shade,
-    shading_inputs,
-    without_shadows,
-)
+from lutcore.shading import ShadingInputs, model_registry, shading_inputs
 from lutcore.tolerance import Tolerance
 from lutcore.visibility import softened, visibility
 

@@ -3,8 +3,9 @@
 import numpy as np
 
 from lutcore import analytic
+from lutcore.exitance import exitance
 from lutcore.lights import DirectionalLight
-from lutcore.shading import exitance, model_registry, shading_inputs
+from lutcore.shading import model_registry, shading_inputs
 from lutcore.table_size import SIZES, samples_needed, with_samples
 from lutcore.tolerance import Tolerance
 

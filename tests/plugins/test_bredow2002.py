@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
-from lutcore.shading import shade
 from tests.surfaces import sphere
 
 LIGHT = [DirectionalLight((0.0, 0.0, 1.0))]

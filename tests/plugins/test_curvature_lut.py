@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lutcore.detail import Detail
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
-from lutcore.shading import ShadingModel, shade, shading_inputs
+from lutcore.shading import ShadingModel, shading_inputs
 from plugins.shading.curvature_lut import CurvatureLut
 from tests import numpy_shading
 from tests.bench.shading_accuracy import ENERGY_RATIOS, RATIOS, model_energies, model_errors

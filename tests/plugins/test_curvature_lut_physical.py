@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 from lutcore.baking import bake
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diffusion import Optics, optics
+from lutcore.exitance import shade
 from lutcore.fresnel import hinges, transmittance
 from lutcore.halfspace import flat_albedo
 from lutcore.lights import DirectionalLight
 from lutcore.materials import Material, material, materials
-from lutcore.shading import shade
 from lutcore.walk.bodies import sphere as ball
 from lutcore.walk.exitance import walk
 from plugins.shading.curvature_lut_physical import _curved

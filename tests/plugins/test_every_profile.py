@@ -14,11 +14,12 @@ from lutcore.diffusion import (
     diffusion_profiles,
     optics,
 )
+from lutcore.exitance import shade
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight, PointLight
 from lutcore.lut import even_form
 from lutcore.materials import material, materials
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 from tests.surfaces import sphere, torus
 
 PROFILES = diffusion_profiles()

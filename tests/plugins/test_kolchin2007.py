@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from lutcore.diffusion import optics
+from lutcore.exitance import shade
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
-from lutcore.shading import shade
 from tests.quadrature import paper_factor
 from tests.surfaces import sphere, torus
 

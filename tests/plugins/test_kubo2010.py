@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lutcore.baking import bake
+from lutcore.exitance import shade
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight
-from lutcore.shading import shade
 from plugins.shading.kubo2010 import gaussian_table
 from tests import numpy_shading
 from tests.surfaces import bent

@@ -3,9 +3,9 @@
 import numpy as np
 
 from lutcore.baking import bake
+from lutcore.exitance import shade
 from lutcore.fresnel import transmittance
 from lutcore.lights import DirectionalLight
-from lutcore.shading import shade
 from tests import numpy_shading
 from tests.bench.shading_speed import LIGHTS
 from tests.surfaces import sphere, torus

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
-from lutcore.shading import shade
 from tests.quadrature import sphere_exitance
 from tests.surfaces import bent, sphere
 

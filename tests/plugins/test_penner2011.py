@@ -5,10 +5,10 @@ import pytest
 
 from lutcore.baking import bake, glowing
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
+from lutcore.exitance import shade
 from lutcore.fresnel import mean_transmittance
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
-from lutcore.shading import shade
 from plugins.shading.penner2011 import ring_table
 from tests import numpy_shading
 from tests.surfaces import bent, sphere

@@ -5,12 +5,13 @@ import pytest
 from numpy.typing import NDArray
 
 from lutcore import analytic
+from lutcore.exitance import shade
 from lutcore.fresnel import transmittance
 from lutcore.geometry import vertex_areas, vertex_corners
 from lutcore.lights import DirectionalLight, Light, PointLight
 from lutcore.materials import material
 from lutcore.mesh import TriangleMesh
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 
 FloatArray = NDArray[np.float64]
 GATHERING = [name for name in shading_models() if not model_registry.get(name).local]

@@ -7,9 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 from lutcore.baking import bake
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
-from lutcore.shading import model_registry, shade, shading_models
+from lutcore.shading import model_registry, shading_models
 from tests.plugins import test_every_shading_model
 from tests.plugins.shading_violations import VIOLATIONS
 from tests.surfaces import sphere

@@ -5,10 +5,10 @@ import pytest
 
 from lutcore.baking import glowing
 from lutcore.diffusion import diffusion_profile, diffusion_profiles, optics
+from lutcore.exitance import shade
 from lutcore.lights import DirectionalLight
 from lutcore.materials import material
 from lutcore.revolution import on_sphere
-from lutcore.shading import shade
 from plugins.shading.sphere_table import sphere_table
 from tests import numpy_shading
 from tests.quadrature import sphere_exitance
