@@ -11,16 +11,11 @@ from lutcore.blend import at
 from lutcore.detail import detail_seen
 from lutcore.error_terms import BENT, CUT, DOUBT, UNSURE
 from lutcore.estimation import principal_curvatures
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact
 from lutcore.lights import DirectionalLight, Light, PointLight
 from lutcore.prediction import COSINES, WEIGHTS, Knowledge, Scene
-from lutcore.shading import (
-    ShadingInputs,
-    ShadingModel,
-    exitance,
-    model_registry,
-    shading_inputs,
-)
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shading_inputs
 from tests.bumps import bare
 
 LIGHT = DirectionalLight((0.6, 0.3, 0.74))
