@@ -3,28 +3,42 @@
 Per R_d and unit irradiance, with the hinges c F_t(c) ~ sum_j w_j max(0, c - c_j) and lengths in
 l_u, the exitance of a curved surface is to second order
 
-    M = c F_t(c) + G(b) - X + Y,    a = N.w,  c = max(a, 0),  b = |S+ w_t|,
-    G(b) = sum_j w_j b psi(|a - c_j|/b),    X ~ E2/(1 + E2) (c F_t(c) + G),
+    M = E(a) + G(b) - X + Y,    a = N.w,  E(a) = c F_t(c),  c = max(a, 0),  b = |S+ w_t|,
+    G(b) = sum_j w_j b psi(|a - c_j|/b),    X ~ E2/(1 + E2) (E + G),
     Y ~ <r^2>/4 |grad(k1 + k2).w|,
 
-because the Laplacian of the normal is -grad(k1 + k2) - (k1^2 + k2^2) N. The terms, in the order of
+because the Laplacian of the normal is -grad(k1 + k2) - (k1^2 + k2^2) N. On a mesh
+
+    h = <r^2>/(<r^2> + A)
+
+tells how far light crosses facets, A the area of the mesh per vertex. The terms, in the order of
 `lutcore.prediction.WEIGHTS`:
 
 - first: |G(b) - G(b')|, b' the bending that the model follows;
 - second: X; anisotropy: its part with (k1 - k2)^2, for models that know one curvature;
-- higher: e^2 + e G(<r^2>^(1/2) b)/2, e = E2/(1 + E2), light that goes through the body; in e^2 it
-  is that of a ball of the body's volume over its area, where that is more;
+- higher: e^2, e = E2/(1 + E2), or that of a ball of the body's volume over its area, where that is
+  more: light that goes through the body;
 - third: Y, less what the error bar makes of the gradient; concave: G of the concave part of S;
-- facet: the area of the mesh per vertex times k1^2 + k2^2, what lies between a facet and the body;
+- corner: what is known of the light at a corner of flat facets, with its sign,
+
+      |D (E + G) h_D + s (E(a) - E(a_0)) + BENT (1 - h)^4 B|,
+
+  and a share of the three without it:
+
+  D is the share of 2 pi that the angles at the vertex lack. Light that crosses no facet comes out
+  of these angles alone; h_D is 1 there and less where light comes from further. a_0 = N_0.w is that
+  of the bare normal N_0, the facets' mean by area. One scale for all channels smooths what light
+  does not blur: s ~ 1 - h^(1/2), as far as facets are rougher than curvature makes them. Normals by
+  channel smooth somewhat less than light does: s ~ -(1 - h)/h^(1/2), small as E(a) - E(a_0) is
+  there. B is by how much E bends over a facet, of which gathered light, linear over patches, has
+  the integral right and not the value at the corner; what bends more is cut, so B fades;
 - base: what references and tables resolve;
-- rough: faces that the normals given do not follow; tilt: the error bar times its scale, where
-  one scale serves all channels; bumps: where each has its own, the angle of the faces to the
-  normal, to a power near 1 that was measured; it hardly depends on h, the share of the light that
-  crosses facets, until light blurs all (h -> 1) or none (h -> 0);
+- bumps: (2 r)^(1/2) h^(1/2) less a share of h, r the mean of 1 - cos between the facets and N_0
+  beyond what curvature makes of it: light blurs facets that no normal follows;
 - residue: E2/(1 + E2) alone, for tables that are off in the dark;
-- beside: G(b*), b* what curvature may be beside the vertex: from its size whatever its sign and
-  direction, its error bar, and its gradient over <r^2>^(1/2). What is flat or hollow here and
-  faces away may have a lit ridge within reach; third, tilt and bumps fade into the dark by b*, too;
+- beside: G(b*) - G(b), b* what curvature may be beside the vertex: from its size where it turns the
+  normal within reach, its error bar, and its gradient over <r^2>^(1/2). What is flat or hollow here
+  and faces away may have a lit ridge within reach; third and bumps fade into the dark by b*, too;
 - least: no light's error is foreseen to be less.
 
 psi is not looked up: psi(0)/(1 + u/L)^8, of the same value at 0 and the same integral, costs no
@@ -36,25 +50,36 @@ from typing import NamedTuple
 import numpy as np
 from numba import prange
 
-from lutcore.arrays import FloatArray, IndexArray
+from lutcore.arrays import FloatArray
 from lutcore.compiled import compiled
-from lutcore.geometry import edge
 from lutcore.lights import light_at
 
 # Half width of the terminator, in N.w.
 _EDGE = 0.1
-DOUBT = 3.1
+DOUBT = 3.99
 """By how much the error bar of curvature counts in b*."""
 
 # By how much its size and its gradient do.
-_SIZE, _CHANGE = 1.1, 1.5
+_SIZE, _CHANGE = 2.32, 1.07
 # The error bar over the facets' width, times this, is how much of the gradient may be noise.
-_NOISE_OF_SLOPE = 1.2
-# Power of the angle of bumps; that of the light that does and does not cross facets is 1/6.
-_STEEPER = 1.2
-# Share of that angle by which cosines beside the normal's count for what is off on flat surfaces.
-_WOBBLE = 0.5
-_CLOSED = 1e-6
+_NOISE_OF_SLOPE = 3.0
+# Of e for the whole body.
+_THROUGH = 0.6
+# h_D = (1 - _FARTHER h) h/(h + _SEEN).
+_FARTHER, _SEEN = 0.416, 0.002
+# Share of 1 - h^(1/2), and of (1 - h)/h^(1/2), that s is.
+_ONE_SCALE, _BY_CHANNEL = 1.31, 0.523
+_LEAST_CROSSED = 1e-3
+# Mean of 1 - cos that curvature makes of facets, over A (k1^2 + k2^2), and twice what roughness
+# beyond it has to be, for normals of one scale to have smoothed something.
+_EXPLAINED, _SMOOTHED = 0.18, 0.062
+BENT, CUT = 0.0685, 0.0134
+"""Share of B that is off, and the B beyond which gathered light is cut."""
+UNSURE = 0.182
+"""Share of each part of what is known at a corner that may be otherwise."""
+
+# How bumps fade where light crosses facets, and into the dark: with L angles, and with b*.
+_BLURRED, _TURNED, _WIDER = 0.655, 0.482, 2.03
 # Cosines of the light among which the worst is sought where no light is known: the error is
 # largest near the terminator, where F_t bends most, or straight above.
 _WORST = np.array([-0.5, -0.2, -0.05, 0.0, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0])
@@ -65,15 +90,16 @@ class Where(NamedTuple):
 
     points: FloatArray
     normals: FloatArray
+    bare: FloatArray
     curvatures: FloatArray
     directions: FloatArray
     error: FloatArray
     slope: FloatArray
     facet: FloatArray
-    rough: FloatArray
-    tilt: FloatArray
-    bumps: FloatArray
+    grain: FloatArray
+    corner: FloatArray
     radius: float
+    by_channel: bool
 
 
 class Spread(NamedTuple):
@@ -138,6 +164,15 @@ def _glow(
 
 
 @compiled()
+def _fall(a: float, b: float, per_width: float) -> float:
+    """Return how the glow falls off in the dark, where the light is bent by b."""
+    fall = 1.0 / (1.0 + max(-a, 0.0) * per_width / (b + 1e-300))
+    fall *= fall
+    fall *= fall
+    return fall * fall
+
+
+@compiled()
 def _read(curve: FloatArray, cosine: float) -> float:
     at = 0.5 * (min(max(cosine, -1.0), 1.0) + 1.0) * (len(curve) - 1)
     i = min(int(at), len(curve) - 2)
@@ -146,11 +181,68 @@ def _read(curve: FloatArray, cosine: float) -> float:
 
 
 @compiled()
-def _error(
-    at: tuple[float, float, float, float, float, float, float, float, float],
-    way: tuple[float, float, float, float],
+def _still(
+    at: tuple[float, float, float, float, float, float, float],
     spread: tuple[float, float, float, float],
     radius: float,
+    by_channel: bool,
+    parts: FloatArray,
+) -> tuple[float, ...]:
+    """Return what the terms of one vertex and channel have without a light.
+
+    `at` is k1, k2, error, facet, grain, corner and the size of the slope, `spread` that of the
+    channel. Returned are l_u k1, l_u k2, what b*^2 has beyond b^2, what counts times E + G, what
+    counts everywhere, <r^2> in mm^2, what of the gradient may be noise, D h_D, s, the error of
+    bumps, by how much they turn what is dark to the light, A^(1/2)/l_u, A (k1^2 + k2^2) and the
+    share of B.
+    """
+    length, _, per_width, square = spread
+    k1, k2 = length * at[0], length * at[1]
+    noise, facet = at[2], at[3]
+    reach, both = square * length * length, at[0] * at[0] + at[1] * at[1]
+    e2 = square * (2.0 * (k1 * k1 + k2 * k2) + (k1 + k2) ** 2) / 16.0
+    e2 /= 1.0 + e2
+    uneven = square * (k1 - k2) ** 2 / 16.0
+    uneven /= 1.0 + uneven
+    change = (reach * at[6]) ** 2
+    turned = reach * both
+    beyond = length * length * (_SIZE * _SIZE * both * turned / (1.0 + turned))
+    beyond += (DOUBT * length * noise) ** 2 + _CHANGE * _CHANGE * change / square
+    share = parts[1] * e2 + parts[2] * uneven + parts[7]
+    through = _THROUGH * square * (length / radius) ** 2
+    through = max(e2, through / (1.0 + through))
+    everywhere = parts[3] * through * through + parts[9] * e2
+    h = reach / (reach + facet)
+    root, rest = np.sqrt(h), 1.0 - h
+    rougher = 2.0 * max(0.0, at[4] - _EXPLAINED * facet * both)
+    if by_channel:
+        s = -_BY_CHANNEL * rest / np.sqrt(h + _LEAST_CROSSED)
+    else:
+        s = _ONE_SCALE * (1.0 - root) * rougher / (rougher + _SMOOTHED * facet * both + 1e-12)
+    angle = np.sqrt(rougher)
+    return (
+        k1,
+        k2,
+        beyond,
+        share,
+        everywhere,
+        reach,
+        _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300),
+        at[5] * (1.0 - _FARTHER * h) * h / (h + _SEEN),
+        s,
+        parts[8] * angle * root * (1.0 - _BLURRED * h),
+        _TURNED * per_width * angle,
+        np.sqrt(facet) / length,
+        facet * both,
+        BENT * rest * rest * rest * rest,
+    )
+
+
+@compiled()
+def _error(
+    way: tuple[float, float, float, float, float],
+    still: tuple[float, ...],
+    spread: tuple[float, float, float, float],
     bend: int,
     w: FloatArray,
     corners: FloatArray,
@@ -160,72 +252,51 @@ def _error(
 ) -> float:
     """Return the bound for one light and channel.
 
-    Numbers and bare arrays instead of named tuples, which would be copied with every call. `at` is
-    k1, k2, error, facet, rough, tilt, bumps, their power and the size of the slope, `way` N.w, w
-    along both principal directions and the slope along w, `spread` that of the channel.
+    Numbers and bare arrays instead of named tuples, which would be copied with every call. `way` is
+    N.w, N_0.w, w along both principal directions and the slope along w, `still` from `_still`,
+    `spread` that of the channel.
     """
-    a, u, v, steep = way
-    length, psi_0, per_width, square = spread
-    k1, k2 = length * at[0], length * at[1]
-    noise, facet, rough, tilt, bumps, slope = at[2], at[3], at[4], at[5], at[6], at[8]
+    a, bare, u, v, steep = way
+    _, psi_0, per_width, _ = spread
+    k1, k2, beyond, share, everywhere, reach, noise = still[:7]
+    corner, s, bumps, turned, step, bent, off_by = still[7:]
     p, q = max(k1, 0.0), max(k2, 0.0)
-    sine = np.sqrt(u * u + v * v)
-    b = np.sqrt((p * u) ** 2 + (q * v) ** 2)
-    hollow = np.sqrt(((k1 - p) * u) ** 2 + ((k2 - q) * v) ** 2)
+    convex = (p * u) ** 2 + (q * v) ** 2
+    concave = ((k1 - p) * u) ** 2 + ((k2 - q) * v) ** 2
+    b, beside = np.sqrt(convex), np.sqrt(convex + beyond)
     followed = b
     if bend == 0:
         followed = 0.0
     elif bend == 1:
-        followed = 0.5 * (p + q) * sine
+        followed = 0.5 * (p + q) * np.sqrt(u * u + v * v)
     elif bend == 2:
-        followed = np.sqrt(0.5 * (p * p + q * q)) * sine
-    e2 = square * (2.0 * (k1 * k1 + k2 * k2) + (k1 + k2) ** 2) / 16.0
-    e2 /= 1.0 + e2
-    uneven = square * (k1 - k2) ** 2 / 16.0
-    uneven /= 1.0 + uneven
-    glow = _glow(a, b, psi_0, per_width, w, corners)
-    lit = _read(entering, a) + glow
-    fall = _fall(a, b, per_width)
-    reach = square * length * length
-    beside = _SIZE * _SIZE * (k1 * k1 + k2 * k2) + (DOUBT * length * noise) ** 2
-    beside = np.sqrt(beside + (_CHANGE * length * slope) ** 2 * reach)
-    fall_beside = _fall(a, max(beside, b), per_width)
+        followed = np.sqrt(0.5 * (p * p + q * q) * (u * u + v * v))
+    glow, straight = _glow(a, b, psi_0, per_width, w, corners), _read(entering, a)
+    lit = straight + glow
     # Where light goes round the terminator, <F_t> is off by as much as at the cosine there.
-    round_ = a if bend == 0 else min(max(a, 0.0) + followed * psi_0 * fall, 1.0)
-    # Facets that turn to and from the light see what the model is off by on either side.
-    apart = _WOBBLE * bumps * sine
-    flat = max(_read(off, round_), _read(off, round_ - apart), _read(off, round_ + apart))
-    error = flat * (1.0 if bend == 0 else fall)
-    if bend != 3:
-        error += parts[0] * abs(glow - _glow(a, followed, psi_0, per_width, w, corners))
-    error += (parts[1] * e2 + parts[2] * uneven) * lit
-    wide = _glow(a, np.sqrt(square) * b, psi_0, per_width, w, corners)
-    through = 0.5 * square * (length / radius) ** 2
-    through = max(e2, through / (1.0 + through))
-    error += parts[3] * (through * through + 0.5 * e2 * min(wide, 1.0))
-    third = 0.25 * reach * max(0.0, abs(steep) - _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300))
-    error += parts[4] * third / (1.0 + third) * fall_beside
-    error += parts[5] * _glow(a, hollow, psi_0, per_width, w, corners)
-    # Faces larger than light reaches do not blur it.
-    held = reach / (reach + facet)
-    error += parts[6] * facet * (k1 * k1 + k2 * k2) / (length * length) * lit
+    if bend == 0:
+        error = _read(off, a) + parts[0] * glow
+    else:
+        fall = _fall(a, b, per_width)
+        error = fall * _read(off, min(max(a, 0.0) + followed * psi_0 * fall, 1.0))
+        if bend != 3:
+            error += parts[0] * abs(glow - _glow(a, followed, psi_0, per_width, w, corners))
     # Next to the terminator a mesh and a table resolve no less than elsewhere.
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
-    error += parts[7] * (lit + 1.5 * edge_ * edge_)
-    error += parts[8] * held * rough * lit
-    crossed = np.sqrt(np.cbrt(4.0 * held * (1.0 - held))) * at[7]
-    error += (parts[9] * tilt + parts[10] * crossed) * sine * fall_beside
-    error += parts[11] * e2 + parts[12] * _glow(a, beside, psi_0, per_width, w, corners)
-    return min(max(error, parts[13]), 1.0)
-
-
-@compiled()
-def _fall(a: float, b: float, per_width: float) -> float:
-    """Return how the glow falls off in the dark, where the light is bent by b."""
-    fall = 1.0 / (1.0 + max(-a, 0.0) * per_width / (b + 1e-300))
-    fall *= fall
-    fall *= fall
-    return fall * fall
+    error += share * lit + everywhere + parts[7] * 1.5 * edge_ * edge_
+    third = 0.25 * reach * max(0.0, abs(steep) - noise)
+    error += parts[4] * third / (1.0 + third) * _fall(a, beside, per_width)
+    error += parts[5] * _glow(a, np.sqrt(concave), psi_0, per_width, w, corners)
+    width = step * np.sqrt(convex + concave)
+    bends = _read(entering, a + width) + _read(entering, a - width) - (2.0 + bent) * straight
+    bends /= 1.0 + (bends / CUT) ** 2
+    sloped = s * (straight - _read(entering, bare))
+    lacking, bent_by = corner * lit, off_by * bends
+    unsure = abs(lacking) + abs(sloped) + abs(bent_by)
+    error += parts[6] * (abs(lacking + sloped + bent_by) + UNSURE * unsure)
+    error += bumps * _fall(a, _WIDER * beside + turned, per_width)
+    error += parts[10] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
+    return min(max(error, parts[11]), 1.0)
 
 
 @compiled(parallel=True)
@@ -248,39 +319,48 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     ndarray, shape=(n, 3)
         In R_d and the lights' unit of irradiance, at most 1 for each light; 0 without a normal.
     """
-    points, normals, directions, slope = on.points, on.normals, on.directions, on.slope
-    k, noise, facet, rough, tilt = on.curvatures, on.error, on.facet, on.rough, on.tilt
-    bumps = on.bumps
+    points, normals, bare, directions = on.points, on.normals, on.bare, on.directions
+    k, noise, slope, facet = on.curvatures, on.error, on.slope, on.facet
+    grain, corner = on.grain, on.corner
     length, psi_0, per_width, square = of.length, of.psi_0, of.per_width, of.square
     w, corners, entering = of.weights, of.corners, of.entering
-    radius, bend, off, parts = on.radius, by.bend, by.off, by.parts
+    radius, by_channel, bend, off, parts = on.radius, on.by_channel, by.bend, by.off, by.parts
     out = np.zeros((len(points), 3))
     for i in prange(len(points)):
-        if normals[i, 0] == 0.0 and normals[i, 1] == 0.0 and normals[i, 2] == 0.0:
-            continue
         steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
-        grain = (bumps[i], bumps[i] ** _STEEPER)
-        at = (k[i, 0], k[i, 1], noise[i], facet[i], rough[i], tilt[i], *grain, steepest)
-        for light in range(len(lights)):
-            x, y, z, strength = light_at(lights, light, points[i, 0], points[i, 1], points[i, 2])
-            a = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
-            u = directions[i, 0, 0] * x + directions[i, 0, 1] * y + directions[i, 0, 2] * z
-            v = directions[i, 1, 0] * x + directions[i, 1, 1] * y + directions[i, 1, 2] * z
-            way = (a, u, v, slope[i, 0] * x + slope[i, 1] * y + slope[i, 2] * z)
-            for c in range(3):
-                spread = (length[c], psi_0[c], per_width[c], square[c])
-                fresnel = (w[c], corners[c], entering[c], off[c])
-                error = _error(at, way, spread, radius, bend, *fresnel, parts)
-                out[i, c] += lights[light, 8 + c] * strength * error
-        if len(lights) == 0:
-            for a in _WORST:
-                sine = np.sqrt(1.0 - a * a)
-                for way in ((a, sine, 0.0, steepest * sine), (a, 0.0, sine, steepest * sine)):
-                    for c in range(3):
-                        spread = (length[c], psi_0[c], per_width[c], square[c])
-                        fresnel = (w[c], corners[c], entering[c], off[c])
-                        error = _error(at, way, spread, radius, bend, *fresnel, parts)
-                        out[i, c] = max(out[i, c], error)
+        place = (points[i, 0], points[i, 1], points[i, 2])
+        at = (k[i, 0], k[i, 1], noise[i], facet[i], grain[i], corner[i], steepest)
+        for c in range(3):
+            n = min(c, len(normals) - 1)
+            nx, ny, nz = normals[n, i, 0], normals[n, i, 1], normals[n, i, 2]
+            if nx == 0.0 and ny == 0.0 and nz == 0.0:
+                continue
+            spread = (length[c], psi_0[c], per_width[c], square[c])
+            fresnel = (w[c], corners[c], entering[c], off[c])
+            still = _still(at, spread, radius, by_channel, parts)
+            total = 0.0
+            for light in range(len(lights)):
+                x, y, z, strength = light_at(lights, light, *place)
+                way = (
+                    nx * x + ny * y + nz * z,
+                    bare[i, 0] * x + bare[i, 1] * y + bare[i, 2] * z,
+                    directions[i, 0, 0] * x + directions[i, 0, 1] * y + directions[i, 0, 2] * z,
+                    directions[i, 1, 0] * x + directions[i, 1, 1] * y + directions[i, 1, 2] * z,
+                    slope[i, 0] * x + slope[i, 1] * y + slope[i, 2] * z,
+                )
+                error = _error(way, still, spread, bend, *fresnel, parts)
+                total += lights[light, 8 + c] * strength * error
+            if len(lights) == 0:
+                gap = (nx - bare[i, 0]) ** 2 + (ny - bare[i, 1]) ** 2 + (nz - bare[i, 2]) ** 2
+                for a in _WORST:
+                    sine = np.sqrt(1.0 - a * a)
+                    lean = sine * np.sqrt(gap)
+                    for side in (a - lean, a + lean):
+                        for u, v in ((sine, 0.0), (0.0, sine)):
+                            way = (a, side, u, v, steepest * sine)
+                            error = _error(way, still, spread, bend, *fresnel, parts)
+                            total = max(total, error)
+            out[i, c] = total
     return out
 
 
@@ -307,67 +387,3 @@ def irradiances(points: FloatArray, lights: FloatArray) -> FloatArray:
             for c in range(3):
                 out[i, c] += strength * lights[light, 8 + c]
     return out
-
-
-@compiled()
-def around(
-    points: FloatArray, faces: IndexArray, normals: FloatArray, values: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-    """Return what the faces at each vertex tell.
-
-    Parameters
-    ----------
-    points : ndarray, shape=(n, 3)
-        Positions, mesh units.
-    faces : ndarray, shape=(m, 3)
-        Triangles.
-    normals : ndarray, shape=(n, 3)
-        Unit normals.
-    values : ndarray, shape=(n,)
-        A field.
-
-    Returns
-    -------
-    slope : ndarray, shape=(n, 3)
-        The field's gradient, the mean of the faces' by area.
-    area : ndarray, shape=(n,)
-        A third of the faces'.
-    rough : ndarray, shape=(n,)
-        Mean by area of 1 - cos of the angle between a face's normal and the vertex's.
-    radius : float
-        Thrice the volume over the area, mesh units: that of a ball; infinite for an open surface.
-    """
-    slope, area = np.zeros((len(points), 3)), np.zeros(len(points))
-    rough = np.zeros(len(points))
-    six, whole, open_x, open_y, open_z = 0.0, 0.0, 0.0, 0.0, 0.0
-    for face in range(len(faces)):
-        i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
-        ux, uy, uz = edge(points, i, j)
-        vx, vy, vz = edge(points, i, k)
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        twice = np.sqrt(nx * nx + ny * ny + nz * nz)
-        if twice == 0.0:
-            continue
-        whole += twice
-        open_x, open_y, open_z = open_x + nx, open_y + ny, open_z + nz
-        six += points[i, 0] * nx + points[i, 1] * ny + points[i, 2] * nz
-        uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
-        vv = vx * vx + vy * vy + vz * vz
-        along, across = values[j] - values[i], values[k] - values[i]
-        s, t = (along * vv - across * uv) / twice, (across * uu - along * uv) / twice
-        for corner in range(3):
-            v = faces[face, corner]
-            area[v] += twice
-            slope[v, 0] += s * ux + t * vx
-            slope[v, 1] += s * uy + t * vy
-            slope[v, 2] += s * uz + t * vz
-            rough[v] += twice - (nx * normals[v, 0] + ny * normals[v, 1] + nz * normals[v, 2])
-    for v in range(len(points)):
-        if area[v] > 0.0:
-            rough[v] /= area[v]
-            for axis in range(3):
-                slope[v, axis] /= area[v]
-    # The normals of a closed surface, by area, add up to nothing.
-    unclosed = np.sqrt(open_x * open_x + open_y * open_y + open_z * open_z)
-    closed = whole > 0.0 and unclosed < _CLOSED * whole and six > 0.0
-    return slope, area / 6.0, rough, six / whole if closed else np.inf

@@ -14,10 +14,9 @@
    --metric asks for tolerances of colour, in the same scenes; --shadows takes tori under low light,
    which shadow themselves, with cast shadows on both sides.
 
---seed N changes all that is random. --tune prints what the constants of `lutcore.prediction` come
-from: linear regression to the 95th percentile, on random shapes. They are of the same families as
-those of the table, other draws; the cylinder and the noisy torus differ in size, material, light
-and noise alone.
+--seed N changes all that is random. --tune prints what the weights of `lutcore.prediction` come
+from (`tests.bench.tuning`): random shapes of the same families as those of the table, other draws;
+the cylinder, the noisy torus and the scans differ in size, material, light and noise alone.
 """
 
 import argparse
@@ -43,7 +42,7 @@ from lutcore.lights import DirectionalLight
 from lutcore.materials import Material, material
 from lutcore.mesh import TriangleMesh
 from lutcore.open_mesh import light_lost
-from lutcore.prediction import WEIGHTS, Knowledge, Scene
+from lutcore.prediction import Scene
 from lutcore.progress import silent
 from lutcore.scale import shading_scale
 from lutcore.shading import ShadingInputs, shading_inputs
@@ -350,46 +349,6 @@ def scenes(
     }
 
 
-def tune(seed: int, total: int, points: int, count: int) -> None:
-    """Print for each model the weights of the terms that bound 95 % of its errors most closely."""
-    from scipy.optimize import linprog
-    from scipy.sparse import csr_matrix, hstack, identity
-
-    cases = []
-    for number in range(total):
-        generator = np.random.default_rng((seed, 777, number))
-        if number % 4 == 3:
-            cases.append(noisy(generator, points, count, False))
-        else:
-            cases.append(case(any_shape(generator, count), generator, points))
-    print(f"{'':28}" + "".join(f"{name[:7]:>9}" for name in ("flat", *WEIGHTS)))
-    for one in predictable():
-        rows, truth = [], []
-        for of in cases:
-            apart = one.model.predicted_error(Apart(**vars(of.scene)))
-            assert apart is not None
-            rows.append(apart.reshape(-1, len(WEIGHTS) + 1))
-            truth.append(true_and_predicted(one, of)[0].ravel())
-        terms, true = np.concatenate(rows), np.concatenate(truth)
-        scale = terms[:, :7].sum(axis=1) + 1e-2 * terms[:, 9] + 1e-5
-        count_ = len(true)
-        # The dual form of quantile regression: the slack above costs .95, that below .05.
-        identity_ = identity(count_)
-        equal = hstack([csr_matrix(terms / scale[:, None]), identity_, -identity_]).tocsr()
-        price = np.repeat([0.0, COVERED, 1.0 - COVERED], [terms.shape[1], count_, count_])
-        found = linprog(price, A_eq=equal, b_eq=true / scale, method="highs").x
-        print(f"{one.label:28}" + "".join(f"{w:9.2g}" for w in found[: terms.shape[1]]))
-
-
-class Apart(Scene):
-    """A scene whose error is each term alone, the flat one first."""
-
-    def error_of(self, model: Knowledge) -> FloatArray:
-        flat = self.bound(model, np.zeros(len(WEIGHTS)))
-        rest = [self.bound(model, row) - flat for row in np.eye(len(WEIGHTS))]
-        return np.stack([flat, *rest], axis=-1)
-
-
 def show(table: dict[str, dict[str, list[float]]]) -> None:
     """Print the first part."""
     print("true error below the predicted, %, and median of predicted over true")
@@ -419,6 +378,8 @@ def main() -> None:
     parser.add_argument("--shadows", action="store_true", help="rings, with cast shadows")
     options = parser.parse_args()
     if options.tune:
+        from tests.bench.tuning import tune
+
         tune(options.seed, options.tune, options.points, options.count)
         return
     table: dict[str, dict[str, list[float]]] = {}

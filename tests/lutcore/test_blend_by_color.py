@@ -118,7 +118,7 @@ def chosen(inputs: ShadingInputs, tolerance: Tolerance, checked: bool = True) ->
     [
         ("mean-de2000", 0.3, 12.0, True),
         ("p99-de2000", 2.5, 20.0, True),
-        ("mean-de2000", 1.4, 20.0, False),
+        ("mean-de2000", 1.0, 20.0, False),
         ("p99-de2000", 12.0, 20.0, False),
     ],
 )

@@ -9,12 +9,14 @@ from lutcore import analytic
 from lutcore.baking import bake
 from lutcore.blend import at
 from lutcore.detail import detail_seen
-from lutcore.error_terms import DOUBT
+from lutcore.error_terms import BENT, CUT, DOUBT, UNSURE
 from lutcore.estimation import principal_curvatures
+from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact
 from lutcore.lights import DirectionalLight, Light, PointLight
 from lutcore.prediction import COSINES, WEIGHTS, Knowledge, Scene
-from lutcore.shading import ShadingInputs, model_registry, shading_inputs
+from lutcore.shading import ShadingInputs, ShadingModel, model_registry, shading_inputs
+from tests.bumps import bare
 
 LIGHT = DirectionalLight((0.6, 0.3, 0.74))
 PREDICTED = (
@@ -65,9 +67,9 @@ def test_flat_surface_leaves_only_what_is_resolved() -> None:
     _, scene = scene_on(body, 1.0)
     directional = model_registry.get("lambert")(fresnel="directional").predicted_error(scene)
     assert directional is not None
-    # 2.5 times the base is what its term can reach: c F_t is at most 1, the edge 1.5. On the sphere
-    # k1^2 + k2^2 = 2/r^2.
-    facets = WEIGHTS["facet"] * 2.0 * scene.facet.max() / 1e12
+    # 2.5 times the base is what its term can reach: c F_t is at most 1, the edge 1.5. What the
+    # facets of so coarse a sphere bend by is half of what they are cut at, and no more.
+    facets = WEIGHTS["corner"] * (1.0 + UNSURE) * BENT * 0.5 * CUT
     assert directional.max() <= 2.5 * WEIGHTS["base"] + facets
 
 
@@ -104,7 +106,7 @@ def test_curvature_noise_counts_at_the_terminator_and_not_at_60_degrees() -> Non
 
 def test_flat_ground_in_the_dark_fears_a_lit_ridge_beside_it() -> None:
     # The same vertices, flat and facing away, once on a plain and once where curvature changes.
-    body = analytic.sphere(400, radius=1e6)
+    body = analytic.sphere(4000, radius=1e6)
     _, plain = scene_on(body, 1.0)
     slope = 0.05 * np.ones((len(plain.points), 1)) * np.array([1.0, 0.0, 0.0])
     changing = replace(plain, slope=slope)
@@ -148,19 +150,73 @@ def test_part_of_a_scene_is_predicted_as_the_whole() -> None:
     np.testing.assert_array_equal(scene.at(some).error_of(known), scene.error_of(known)[some])
 
 
-def test_bumps_that_light_blurs_or_shows_are_no_error() -> None:
-    # What the normals of each channel's light leave out counts where facets are as wide as light
-    # reaches, and neither the error bar of one scale nor its tilt counts then.
+def test_bumps_count_where_light_crosses_facets() -> None:
+    # Not where it comes from those of one corner alone, and not where there are none.
     weights = np.array([float(term == "bumps") for term in WEIGHTS])
-    body = analytic.torus(3000, irregular=True, major=24.0, minor=10.0)
-    mesh = body.noisy(0.1)
-    found, largest = principal_curvatures(mesh, "auto", 3.0), []
-    for mm in (1e-3, 1.0, 1e3):
+    smooth = analytic.torus(3000, major=24.0, minor=10.0).mesh
+    bumpy = analytic.torus(3000, irregular=True, major=24.0, minor=10.0).noisy(0.1)
+    largest = []
+    for mesh, mm in ((bumpy, 10.0), (bumpy, 1e4), (smooth, 10.0)):
+        found = principal_curvatures(mesh, "auto", 3.0)
         seen = detail_seen(mesh, "skin1", mm)
         scene = Scene.of(shading_inputs(mesh, found, "skin1", [LIGHT], mm, detail=seen), found)
-        assert not scene.tilt.any()
         largest.append(scene.bound(Knowledge(scene.entering), weights).max())
-    assert largest[1] > 3.0 * max(largest[0], largest[2])
-    single = Scene.of(shading_inputs(mesh, found, "skin1", [LIGHT], 1.0), found)
-    assert single.tilt.any()
-    assert not single.bumps.any()
+    assert largest[0] > 100.0 * max(largest[1], largest[2])
+
+
+@pytest.mark.parametrize("by_channel", [True, False])
+def test_noise_that_light_shows_is_known_from_the_facets(by_channel: bool) -> None:
+    # Light reaches a seventh of the facets' width: what comes out follows from the angles and the
+    # normals around each vertex, of which the noise makes most of the error.
+    mesh, mm = analytic.torus(3000, irregular=True, major=24.0, minor=10.0).noisy(0.1), 40.0
+    found = principal_curvatures(mesh, "auto", 3.0)
+    seen = detail_seen(mesh, "skin1", mm) if by_channel else None
+    inputs = shading_inputs(mesh, found, "skin1", [LIGHT], mm, detail=seen)
+    chosen = np.random.default_rng(3).choice(len(mesh.vertices), 200, replace=False)
+    truth = exact(shading_inputs(mesh, bare(mesh), "skin1", [LIGHT], mm), mesh.vertices[chosen])
+    given = exitance(model_registry.get("curvature-lut")(hinges=8), at(inputs, chosen))
+    scene = Scene.of(inputs, found).at(chosen)
+    weights = np.array([float(term == "corner") for term in WEIGHTS])
+    known = scene.bound(Knowledge(scene.entering), weights)
+    error = np.abs(given - truth) / inputs.table.total
+    lit = np.einsum("cnk,k->nc", scene.shaded, np.array(LIGHT.direction)) > 0.3
+    lit = np.broadcast_to(lit, error.shape)
+    assert np.median(error[lit]) > 3e-3
+    assert np.corrcoef(error[lit], known[lit])[0, 1] > 0.8
+    assert np.median(np.abs(error - known)[lit]) < 0.5 * np.median(error[lit])
+
+
+def test_normals_of_a_smooth_body_smooth_nothing() -> None:
+    # Those of the facets differ a little from the given ones: by no noise.
+    weights = np.array([float(term == "corner") for term in WEIGHTS])
+    _, scene = scene_on(analytic.torus(3000, major=3.0, minor=1.0), 40.0)
+    exactly = replace(scene, bare=scene.normals)
+    known = Knowledge(scene.entering)
+    np.testing.assert_allclose(
+        scene.bound(known, weights), exactly.bound(known, weights), atol=3e-5
+    )
+
+
+def test_prediction_has_no_jumps() -> None:
+    # As the light goes round and as the body grows, no step is much larger than the next.
+    body = analytic.torus(400, irregular=True, major=3.0, minor=1.0).noisy(0.05)
+    found = principal_curvatures(body, "auto", 1.0)
+    for name in ("lambert", "curvature-lut", "kubo2010"):
+        model = model_registry.get(name)()
+
+        def predicted(angle: float, mm: float, model: ShadingModel = model) -> np.ndarray:
+            lights = [DirectionalLight((np.sin(angle), 0.3, np.cos(angle)))]
+            inputs = shading_inputs(body, found, "skin1", lights, mm)
+            value = model.predicted_error(Scene.of(inputs, found))
+            assert value is not None
+            return value
+
+        for along in (
+            lambda t: predicted(2.0 * np.pi * t, 20.0),
+            lambda t: predicted(0.7, float(np.exp(6.0 * t))),
+        ):
+            steps = [
+                np.abs(np.diff([along(t) for t in np.linspace(0.0, 1.0, n)], axis=0)).max()
+                for n in (200, 400)
+            ]
+            assert steps[1] < 0.75 * steps[0]
