@@ -26,7 +26,7 @@ _LEAST_CLASS = 30
 # Passes over one-rings that average the energies: a Gaussian of two spacings.
 _PASSES = 8
 # Bands that one loop averages together; constant columns become vector instructions.
-_TOGETHER = 12
+_TOGETHER = 8
 # Stands for no energy at all, mesh sizes being about 1.
 _NONE = 1e-30
 # Bounds of the areas over their median that noise follows.
@@ -194,35 +194,14 @@ def _average(
         share = np.float32(1.0) / np.float32(1 + start[i + 1] - start[i])
         s0, s1, s2, s3 = values[i, 0], values[i, 1], values[i, 2], values[i, 3]
         s4, s5, s6, s7 = values[i, 4], values[i, 5], values[i, 6], values[i, 7]
-        s8, s9, s10, s11 = values[i, 8], values[i, 9], values[i, 10], values[i, 11]
         for at in range(start[i], start[i + 1]):
             j = neighbour[at]
-            s0, s1, s2, s3 = (
-                s0 + values[j, 0],
-                s1 + values[j, 1],
-                s2 + values[j, 2],
-                s3 + values[j, 3],
-            )
-            s4, s5, s6, s7 = (
-                s4 + values[j, 4],
-                s5 + values[j, 5],
-                s6 + values[j, 6],
-                s7 + values[j, 7],
-            )
-            s8, s9, s10, s11 = (
-                s8 + values[j, 8],
-                s9 + values[j, 9],
-                s10 + values[j, 10],
-                s11 + values[j, 11],
-            )
+            s0, s1 = s0 + values[j, 0], s1 + values[j, 1]
+            s2, s3 = s2 + values[j, 2], s3 + values[j, 3]
+            s4, s5 = s4 + values[j, 4], s5 + values[j, 5]
+            s6, s7 = s6 + values[j, 6], s7 + values[j, 7]
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = share * s0, share * s1, share * s2, share * s3
         out[i, 4], out[i, 5], out[i, 6], out[i, 7] = share * s4, share * s5, share * s6, share * s7
-        out[i, 8], out[i, 9], out[i, 10], out[i, 11] = (
-            share * s8,
-            share * s9,
-            share * s10,
-            share * s11,
-        )
 
 
 def _places(start: IndexArray, neighbour: IndexArray, rim: BoolArray) -> NDArray[np.int8]:

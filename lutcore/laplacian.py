@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lutcore.arrays import BoolArray, FloatArray, IndexArray
 from lutcore.compiled import compiled
-from lutcore.geometry import Corners, edge
+from lutcore.geometry import Corners, edge, other_two
 from lutcore.mesh import TriangleMesh
 from lutcore.rings import neighbours, slot_of
 
@@ -71,12 +71,9 @@ def laplacian(
     """
     start, neighbour = neighbours(mesh, corners)
     rate, rim = np.empty(len(neighbour), np.float32), np.empty(len(areas), np.bool_)
-    half = np.empty(mesh.faces.shape)
-    _cotangents(mesh.vertices, mesh.faces, half)
     _rates(
         mesh.vertices,
         mesh.faces,
-        half,
         corners.start,
         corners.corner,
         start,
@@ -106,26 +103,18 @@ def _relative_to_largest(start: IndexArray, rate: NDArray[np.float32]) -> float:
     return largest
 
 
-@compiled(parallel=True)
-def _cotangents(vertices: FloatArray, faces: IndexArray, half: FloatArray) -> None:
-    """Write half the cotangent of the angle at each corner."""
-    for face in prange(len(faces)):
-        a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
-        ux, uy, uz = edge(vertices, a, b)
-        vx, vy, vz = edge(vertices, b, c)
-        wx, wy, wz = edge(vertices, c, a)
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        scale = -0.5 / np.sqrt(x * x + y * y + z * z)
-        half[face, 0] = scale * (ux * wx + uy * wy + uz * wz)
-        half[face, 1] = scale * (vx * ux + vy * uy + vz * uz)
-        half[face, 2] = scale * (wx * vx + wy * vy + wz * vz)
+@compiled()
+def _cotangent(vertices: FloatArray, apex: int, a: int, b: int) -> float:
+    ux, uy, uz = edge(vertices, apex, a)
+    vx, vy, vz = edge(vertices, apex, b)
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return (ux * vx + uy * vy + uz * vz) / np.sqrt(x * x + y * y + z * z)
 
 
 @compiled(parallel=True)
 def _rates(
     vertices: FloatArray,
     faces: IndexArray,
-    half: FloatArray,
     corner_start: IndexArray,
     corner: IndexArray,
     start: IndexArray,
@@ -146,13 +135,12 @@ def _rates(
         for j in range(last - first):
             weight[j], faces_at[j] = 0.0, 0
         for at in range(corner_start[vertex], corner_start[vertex + 1]):
-            face, j = corner[at] // 3, corner[at] % 3
-            after, before = (j + 1) % 3, (j + 2) % 3
-            slot = slot_of(neighbour, first, last, faces[face, after]) - first
-            weight[slot] += half[face, before]
+            after, before = other_two(faces, corner[at])
+            slot = slot_of(neighbour, first, last, after) - first
+            weight[slot] += 0.5 * _cotangent(vertices, before, vertex, after)
             faces_at[slot] += 1
-            slot = slot_of(neighbour, first, last, faces[face, before]) - first
-            weight[slot] += half[face, after]
+            slot = slot_of(neighbour, first, last, before) - first
+            weight[slot] += 0.5 * _cotangent(vertices, after, before, vertex)
             faces_at[slot] += 1
         rim = 0
         for j in range(last - first):
