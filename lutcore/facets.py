@@ -8,6 +8,7 @@ from numba import prange
 from lutcore.arrays import FloatArray, IndexArray
 from lutcore.compiled import compiled
 from lutcore.geometry import edge
+from lutcore.tensors import Vector
 
 _CLOSED = 1e-6
 
@@ -71,12 +72,8 @@ def facets(points: FloatArray, faces: IndexArray, values: FloatArray) -> Facets:
 def _angles(points: FloatArray, faces: IndexArray, angles: FloatArray) -> None:
     """Write the angles at the first two corners of each face."""
     for face in prange(len(faces)):
-        i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
-        ux, uy, uz = edge(points, i, j)
-        vx, vy, vz = edge(points, i, k)
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        twice = np.sqrt(x * x + y * y + z * z)
-        uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
+        u, v, n = _sides(points, faces, face)
+        twice, uu, uv = np.sqrt(_dot(n, n)), _dot(u, u), _dot(u, v)
         angles[face, 0], angles[face, 1] = np.arctan2(twice, uv), np.arctan2(twice, uu - uv)
 
 
@@ -96,12 +93,10 @@ def _collect(
     six, whole, open_x, open_y, open_z = 0.0, 0.0, 0.0, 0.0, 0.0
     for face in range(len(faces)):
         i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
-        ux, uy, uz = edge(points, i, j)
-        vx, vy, vz = edge(points, i, k)
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        twice = np.sqrt(nx * nx + ny * ny + nz * nz)
-        uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
-        vv = vx * vx + vy * vy + vz * vz
+        first_side, second_side, cross = _sides(points, faces, face)
+        (ux, uy, uz), (vx, vy, vz), (nx, ny, nz) = first_side, second_side, cross
+        twice, uu = np.sqrt(_dot(cross, cross)), _dot(first_side, first_side)
+        uv, vv = _dot(first_side, second_side), _dot(second_side, second_side)
         first, second = angles[face, 0], angles[face, 1]
         corner[i] += first
         corner[j] += second
@@ -118,11 +113,10 @@ def _collect(
         along, across = values[j] - values[i], values[k] - values[i]
         s, t = (along * vv - across * uv) / twice, (across * uu - along * uv) / twice
         sx, sy, sz = s * ux + t * vx, s * uy + t * vy, s * uz + t * vz
-        for at in range(3):
-            v = faces[face, at]
-            area[v] += twice
-            _add(slope, v, sx, sy, sz)
-            _add(bare, v, nx, ny, nz)
+        for vertex in (i, j, k):
+            area[vertex] += twice
+            _add(slope, vertex, sx, sy, sz)
+            _add(bare, vertex, nx, ny, nz)
     for v in range(len(points)):
         borders = link[v] != 0 or area[v] == 0.0
         corner[v] = 0.0 if borders else 1.0 - corner[v] / (2.0 * np.pi)
@@ -136,6 +130,21 @@ def _collect(
     unclosed = np.sqrt(open_x * open_x + open_y * open_y + open_z * open_z)
     closed = whole > 0.0 and unclosed < _CLOSED * whole and six > 0.0
     return six / whole if closed else np.inf
+
+
+@compiled()
+def _sides(points: FloatArray, faces: IndexArray, face: int) -> tuple[Vector, Vector, Vector]:
+    """Return the sides of a face from its first corner, and their cross product."""
+    i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
+    ux, uy, uz = edge(points, i, j)
+    vx, vy, vz = edge(points, i, k)
+    cross = (uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx)
+    return (ux, uy, uz), (vx, vy, vz), cross
+
+
+@compiled()
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled()
