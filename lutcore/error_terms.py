@@ -50,7 +50,8 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
   and faces away may have a lit ridge within reach; third and bumps fade into the dark by b*, too;
 - strays: v, by which normals stray within what light sees beyond what curvature makes of it, their
   variance less <r^2>/2 (k1^2 + k2^2): what is flat in the mean may have lit and dark parts;
-- unsure: the first three parts of what is known, without their signs, as far as facets are rough;
+- unsure: the same four parts without their signs, twice where facets are rough: where they cancel,
+  what is off in each is left;
 - least: no light's error is foreseen to be less.
 
 psi is not looked up: psi(0)/(1 + u/L)^8, of the same value at 0 and the same integral, costs no
@@ -214,7 +215,7 @@ def _still(
     channel. Returned are l_u k1, l_u k2, what b*^2 has beyond b^2, what counts times E + G, what
     counts everywhere, <r^2>/4 in mm^2, what the mesh makes of it, what of the gradient may be
     noise, D h_D, s, the error of bumps, by how much they turn what is dark to the light, both of
-    what strays, S T S, the share of B and that of roughness beyond what curvature makes.
+    what strays, S T S, the share of B and that of what is unsure.
     """
     length, _, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
@@ -237,11 +238,11 @@ def _still(
     bent, bent_beside = at[7] * at[0] * at[0], at[9] * at[1] * at[1]
     turns = bent + bent_beside
     rougher = 2.0 * max(0.0, at[4] - _EXPLAINED * turns)
-    noisy = rougher / (rougher + _SMOOTHED * turns + 1e-12)
+    rough = rougher / (rougher + _SMOOTHED * turns + 1e-12)
     if by_channel:
         s = -_BY_CHANNEL * rest / np.sqrt(h + _LEAST_CROSSED)
     else:
-        s = _ONE_SCALE * (1.0 - root) * noisy
+        s = _ONE_SCALE * (1.0 - root) * rough
     angle, strays = np.sqrt(rougher), np.sqrt(max(0.0, variance - 0.5 * turned))
     return (
         k1,
@@ -262,7 +263,7 @@ def _still(
         at[8] * at[0] * at[1],
         bent_beside,
         BENT * (1.0 - root) * (1.0 - root),
-        noisy,
+        parts[12] * (1.0 + rough),
     )
 
 
@@ -287,7 +288,7 @@ def _error(
     a, bare, u, v, steep = way
     _, psi_0, per_width, _ = spread
     k1, k2, beyond, share, everywhere, reach, on_mesh, noise = still[:8]
-    corner, s, bumps, turned, strays, strayed, bent, across, bent_beside, off_by, noisy = still[8:]
+    corner, s, bumps, turned, strays, strayed, bent, across, bent_beside, off_by, doubt = still[8:]
     p, q = max(k1, 0.0), max(k2, 0.0)
     convex = (p * u) ** 2 + (q * v) ** 2
     concave = ((k1 - p) * u) ** 2 + ((k2 - q) * v) ** 2
@@ -328,8 +329,8 @@ def _error(
         rises = -rises
     sloped = s * (straight - _read(entering, bare))
     lacking, bent_by = corner * lit, off_by * bends
-    unsure = abs(sloped) + noisy * (abs(lacking) + abs(bent_by))
-    error += parts[6] * abs(lacking + sloped + bent_by - rises) + parts[12] * unsure
+    unsure = abs(lacking) + abs(sloped) + abs(bent_by) + abs(rises)
+    error += parts[6] * abs(lacking + sloped + bent_by - rises) + doubt * unsure
     error += bumps * _fall(a, _WIDER * beside + turned, per_width)
     error += parts[10] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
     error += strays * _fall(a, beside + strayed, per_width)

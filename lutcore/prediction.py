@@ -34,13 +34,13 @@ WEIGHTS = {
     "higher": 3.7,
     "third": 0.9,
     "concave": 1.32,
-    "corner": 1.6,
+    "corner": 1.5,
     "base": 1e-05,
     "bumps": 0.21,
-    "residue": 0.08,
+    "residue": 0.3,
     "beside": 0.22,
     "strays": 0.085,
-    "unsure": 0.5,
+    "unsure": 0.25,
     "least": 0.0001,
 }
 """By how much each term of `lutcore.error_terms` counts.
