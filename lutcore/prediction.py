@@ -28,7 +28,7 @@ BENDS = ("none", "mean", "rms", "tensor")
 """See `Knowledge.bend`."""
 
 WEIGHTS = {
-    "first": 1.7,
+    "first": 2.2,
     "second": 1.2,
     "anisotropy": 1.6,
     "higher": 3.7,
