@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from lutcore.errors import ParameterError
 
 FloatArray = NDArray[np.float64]
+SingleArray = NDArray[np.float32]
 IndexArray = NDArray[np.int32]
 BoolArray = NDArray[np.bool_]
 AnyArray = NDArray[Any]

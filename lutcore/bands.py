@@ -10,10 +10,9 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from lutcore.arrays import BoolArray, FloatArray, IndexArray
+from lutcore.arrays import BoolArray, FloatArray, IndexArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
-from lutcore.lowpass import SingleArray
 from lutcore.tensors import principal
 
 # Rings from the rim where a new class of vertices begins; beyond the last, the interior. Near a

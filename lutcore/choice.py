@@ -106,7 +106,9 @@ def choose(
     tolerance at a confidence of 99 %; where nothing can be checked, because there is no light or
     nothing of the mesh is far enough from its borders, if what is predicted is. Models that predict
     no error are listed and never chosen. Without lights the error is that under the worst one.
-    Cast shadows are in the check where the scene has visibility, and in no prediction.
+    Where no local model is enough, what gathers is checked in the same way, against the same light:
+    what lies between mesh and body counts in its prediction only. Cast shadows are in both, where
+    the scene has visibility.
 
     Parameters
     ----------
@@ -150,7 +152,7 @@ def choose(
     every = candidates() if models is None else models
     rungs: list[Rung] = []
     for one in sorted(every, key=judge.milliseconds):
-        rungs.append(judge.rung(one))
+        rungs.append(judge.rung(one, not any(rung.adequate for rung in rungs)))
         if rungs[-1].adequate and not whole:
             break
     known = [rung for rung in rungs if not np.isnan(rung.score)]

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from lutcore.arrays import FloatArray, IndexArray
+from lutcore.arrays import FloatArray, IndexArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.geometry import median_vertex_area, vertex_corners
 from lutcore.laplacian import Laplacian, laplacian
-from lutcore.lowpass import SingleArray, low_pass
+from lutcore.lowpass import low_pass
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
 from lutcore.stars import stars

@@ -13,7 +13,7 @@ import numpy as np
 from numba import prange
 
 from lutcore.arrangement import arranged
-from lutcore.arrays import FloatArray, finite
+from lutcore.arrays import FloatArray, SingleArray, finite
 from lutcore.baking import bake, glowing, resolved
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
@@ -21,7 +21,7 @@ from lutcore.cosmoothing import Surface, fit_shape_operators, smoothed_normals, 
 from lutcore.diffusion import DiffusionProfile, Optics, diffusion_profile, optics
 from lutcore.errors import ParameterError
 from lutcore.estimation import sized_to_one
-from lutcore.lowpass import SingleArray, filtered, series_at, series_of
+from lutcore.lowpass import filtered, series_at, series_of
 from lutcore.materials import Material
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.lights import is_directional, light_at
 from lutcore.lut import BLOCK, PsiTable
-from lutcore.response_table import BEND, COLUMNS, MOST, ROWS, SingleArray, halfway, response
+from lutcore.response_table import BEND, COLUMNS, MOST, ROWS, halfway, response
 
 # Of the kernel: a number written there would have it compute in double precision.
 _ONE, _BEND = np.float32(1.0), np.float32(BEND)

@@ -10,7 +10,7 @@ from lutcore.blend import at
 from lutcore.checking import Check, Checked, Coverage
 from lutcore.color import auto_exposure
 from lutcore.costs import Candidate, Cost
-from lutcore.exitance import exitance, without_shadows
+from lutcore.exitance import bared, exitance, without_shadows
 from lutcore.prediction import Scene
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 from lutcore.table_size import with_samples
@@ -47,10 +47,11 @@ class Rung:
     predicted : bool
         Whether the predicted score is within the tolerance.
     checked : Checked or None
-        What was found at a sample; None for a model that predicts nothing, for one that is not
-        local, as the reference is not, and where nothing was checked.
+        What was found at a sample; None for a model that predicts nothing, for the reference, for
+        one that is not local where another is known to be enough, and where nothing was checked.
     adequate : bool
-        Whether what was found is within the tolerance for sure, or else what is predicted.
+        Whether what was found is within the tolerance for sure, or else what is predicted. The
+        reference is where others are checked against it.
     """
 
     candidate: Candidate
@@ -142,13 +143,15 @@ class Judge:
         each = self.costs[one.label].per_vertex(self.count, max(self.lights, 1))
         return 1e-6 * each * self.count
 
-    def rung(self, one: Candidate) -> Rung:
+    def rung(self, one: Candidate, needed: bool = True) -> Rung:
         """Return a model's place on the ladder.
 
         Parameters
         ----------
         one : Candidate
             The model.
+        needed : bool
+            Whether no other is known to be enough: one that is not local is checked then only.
 
         Returns
         -------
@@ -164,7 +167,8 @@ class Judge:
         of_vertices = relative(errors, self.irradiance)
         judged = self.judged(errors)
         score, value = self.tolerance.score(judged), self.tolerance.value
-        checked = self._checked(one.model) if one.model.local else None
+        checked = self._checked(one.model) if one.model.local or needed else None
+        sure = self.check is not None and one.model.reference
         return Rung(
             candidate=one,
             median=float(np.median(of_vertices)) if len(of_vertices) else 0.0,
@@ -175,13 +179,15 @@ class Judge:
             milliseconds=spent,
             predicted=score <= value,
             checked=checked,
-            adequate=(score if checked is None else checked.high) <= value,
+            adequate=sure or (score if checked is None else checked.high) <= value,
         )
 
     def _checked(self, model: ShadingModel) -> Checked | None:
-        if self.check is None:
+        if self.check is None or model.reference:
             return None
         check, sized = self.check, with_samples(model, self.samples)
+        if not model.local:
+            return check(lambda vertices: sized.shade_at(bared(self.inputs), vertices))
         return check(lambda vertices: exitance(sized, check.inputs_at(vertices)))
 
     @property

@@ -36,6 +36,8 @@ class Laplacian(NamedTuple):
         No eigenvalue of L is larger, 1/mesh unit squared.
     rim : ndarray of bool, shape=(n,)
         Vertices at an edge of one face only.
+    parts : ndarray of int32, shape=(p + 1,)
+        Where parts begin that are known to have no neighbours in each other; from 0 to n.
     """
 
     start: IndexArray
@@ -43,6 +45,7 @@ class Laplacian(NamedTuple):
     rate: NDArray[np.float32]
     bound: float
     rim: BoolArray
+    parts: IndexArray
 
 
 def laplacian(
@@ -85,7 +88,8 @@ def laplacian(
     )
     # Even meshes stay far below the cap, and the work grows with the root of the bound.
     largest = _relative_to_largest(start, rate)
-    return Laplacian(start, neighbour, rate, 2.0 * _ROW_CAP * largest / typical_area, rim)
+    bound = 2.0 * _ROW_CAP * largest / typical_area
+    return Laplacian(start, neighbour, rate, bound, rim, np.array([0, len(areas)], np.int32))
 
 
 @compiled(parallel=True)

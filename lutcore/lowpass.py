@@ -9,20 +9,12 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
-from numba import prange
-from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
-from lutcore.compiled import compiled
+from lutcore.arrays import FloatArray, SingleArray
 from lutcore.laplacian import Laplacian
 from lutcore.progress import Progress, silent, tell
+from lutcore.recurrence import FIELDS, add_step, apply, begin, go_on, step
 
-SingleArray = NDArray[np.float32]
-_Unsigned = NDArray[np.uint32]
-FIELDS = 6
-"""Fields smoothed together: three of positions and three of normals, or a tensor's six."""
-
-_TWO = np.float32(2.0)
 # Filters of lower degree cannot fulfil both conditions with something to spare.
 _LEAST_DEGREE, _LARGEST_DEGREE = 3, 40_000
 
@@ -98,16 +90,19 @@ def filtered(
     # Unsigned: compiled loops need not ask whether an index counts from the end.
     links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
     before = np.empty((len(fields), FIELDS), np.float32)
-    _apply(*links, fields, 0.5, before)
+    apply(*links, fields, 0.5, before)
     change = np.empty((len(series), len(before), FIELDS), np.float32)
     now = np.zeros_like(before)
-    _step(*links, before, now, np.float32(0.5))
-    _begin(before, now, weights[0], weights[1], change)
+    step(*links, before, now, np.float32(0.5))
+    begin(before, now, weights[0], weights[1], change)
+    if len(operator.parts) > 2:
+        go_on(operator.parts, *links, now, before, change, weights)
+        return change
     for term in range(2, len(weights), 2):
         if term % 8 == 0:
             tell(progress, term / terms, "smoothing")
-        _step(*links, now, before, np.float32(1.0))
-        _add_step(*links, before, now, change, weights[term], weights[term + 1])
+        step(*links, now, before, np.float32(1.0))
+        add_step(*links, before, now, change, weights[term], weights[term + 1])
     return change
 
 
@@ -250,121 +245,3 @@ def _coefficients(values: FloatArray) -> FloatArray:
     coefficients: FloatArray = (turned * np.exp(-0.5j * np.pi * np.arange(size) / size)).real / size
     coefficients[0] *= 0.5
     return coefficients
-
-
-@compiled(parallel=True)
-def _begin(
-    first: SingleArray,
-    second: SingleArray,
-    weight: SingleArray,
-    weight_after: SingleArray,
-    change: SingleArray,
-) -> None:
-    for i in prange(len(first)):
-        for scale in range(len(weight)):
-            for field in range(FIELDS):
-                change[scale, i, field] = (
-                    weight[scale] * first[i, field] + weight_after[scale] * second[i, field]
-                )
-
-
-@compiled(parallel=True)
-def _apply(
-    start: _Unsigned,
-    neighbour: _Unsigned,
-    rate: SingleArray,
-    f: FloatArray,
-    factor: float,
-    out: SingleArray,
-) -> None:
-    for i in prange(len(start) - 1):
-        s0 = s1 = s2 = s3 = s4 = s5 = 0.0
-        for at in range(start[i], start[i + 1]):
-            j, w = neighbour[at], factor * rate[at]
-            s0 += w * (f[i, 0] - f[j, 0])
-            s1 += w * (f[i, 1] - f[j, 1])
-            s2 += w * (f[i, 2] - f[j, 2])
-            s3 += w * (f[i, 3] - f[j, 3])
-            s4 += w * (f[i, 4] - f[j, 4])
-            s5 += w * (f[i, 5] - f[j, 5])
-        out[i, 0], out[i, 1], out[i, 2] = s0, s1, s2
-        out[i, 3], out[i, 4], out[i, 5] = s3, s4, s5
-
-
-@compiled(parallel=True, packed=True)
-def _step(
-    start: _Unsigned,
-    neighbour: _Unsigned,
-    rate: SingleArray,
-    now: SingleArray,
-    before: SingleArray,
-    half: np.float32,
-) -> None:
-    """Replace T_{k-1} by T_{k+1} = 2 x T_k - T_{k-1}."""
-    double = _TWO * half
-    keep = double - np.float32(1.0)
-    for i in prange(len(start) - 1):
-        r = np.float32(0.0)
-        s0 = s1 = s2 = s3 = s4 = s5 = np.float32(0.0)
-        for at in range(start[i], start[i + 1]):
-            j, w = neighbour[at], rate[at]
-            r += w
-            s0 += w * now[j, 0]
-            s1 += w * now[j, 1]
-            s2 += w * now[j, 2]
-            s3 += w * now[j, 3]
-            s4 += w * now[j, 4]
-            s5 += w * now[j, 5]
-        r -= np.float32(1.0)
-        before[i, 0] = double * (r * now[i, 0] - s0) - keep * before[i, 0]
-        before[i, 1] = double * (r * now[i, 1] - s1) - keep * before[i, 1]
-        before[i, 2] = double * (r * now[i, 2] - s2) - keep * before[i, 2]
-        before[i, 3] = double * (r * now[i, 3] - s3) - keep * before[i, 3]
-        before[i, 4] = double * (r * now[i, 4] - s4) - keep * before[i, 4]
-        before[i, 5] = double * (r * now[i, 5] - s5) - keep * before[i, 5]
-
-
-@compiled(parallel=True, packed=True)
-def _add_step(
-    start: _Unsigned,
-    neighbour: _Unsigned,
-    rate: SingleArray,
-    now: SingleArray,
-    before: SingleArray,
-    change: SingleArray,
-    weight: SingleArray,
-    weight_after: SingleArray,
-) -> None:
-    """Do the same, and add the shares of T_k and T_{k+1} to every scale."""
-    for i in prange(len(start) - 1):
-        r = np.float32(0.0)
-        s0 = s1 = s2 = s3 = s4 = s5 = np.float32(0.0)
-        for at in range(start[i], start[i + 1]):
-            j, w = neighbour[at], rate[at]
-            r += w
-            s0 += w * now[j, 0]
-            s1 += w * now[j, 1]
-            s2 += w * now[j, 2]
-            s3 += w * now[j, 3]
-            s4 += w * now[j, 4]
-            s5 += w * now[j, 5]
-        r -= np.float32(1.0)
-        n0, n1, n2 = now[i, 0], now[i, 1], now[i, 2]
-        n3, n4, n5 = now[i, 3], now[i, 4], now[i, 5]
-        t0 = _TWO * (r * n0 - s0) - before[i, 0]
-        t1 = _TWO * (r * n1 - s1) - before[i, 1]
-        t2 = _TWO * (r * n2 - s2) - before[i, 2]
-        t3 = _TWO * (r * n3 - s3) - before[i, 3]
-        t4 = _TWO * (r * n4 - s4) - before[i, 4]
-        t5 = _TWO * (r * n5 - s5) - before[i, 5]
-        before[i, 0], before[i, 1], before[i, 2] = t0, t1, t2
-        before[i, 3], before[i, 4], before[i, 5] = t3, t4, t5
-        for scale in range(len(change)):
-            c, d = weight[scale], weight_after[scale]
-            if c != np.float32(0.0) or d != np.float32(0.0):
-                change[scale, i, 0] += c * n0 + d * t0
-                change[scale, i, 1] += c * n1 + d * t1
-                change[scale, i, 2] += c * n2 + d * t2
-                change[scale, i, 3] += c * n3 + d * t3
-                change[scale, i, 4] += c * n4 + d * t4
-                change[scale, i, 5] += c * n5 + d * t5

@@ -32,21 +32,24 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
     seeds = (np.arange(_SEEDS) * 36 % _SEEDS * count // _SEEDS).astype(np.int32)
     operator = on.operator
     size = min(max(count // 25, _LEAST_PATCH), _LARGEST_PATCH)
-    order, inner = _grow(operator.start, operator.neighbour, seeds, size, _PATCHES)
+    order, inner, parts = _grow(operator.start, operator.neighbour, seeds, size, _PATCHES)
     number = np.full(count, -1, np.int32)
     number[order] = np.arange(len(order), dtype=np.int32)
     owner = np.repeat(np.arange(len(order)), np.diff(operator.start)[order])
     first = np.concatenate(([0], np.cumsum(np.diff(operator.start)[order])))
     slots = np.arange(len(owner)) - first[owner] + operator.start[order][owner]
-    inside = number[operator.neighbour[slots]] >= 0
+    # Where two discs met, they are cut apart.
+    disc = np.repeat(np.arange(len(parts) - 1), np.diff(parts))
+    other = number[operator.neighbour[slots]]
+    inside = (other >= 0) & (disc[other] == disc[owner])
     start = np.concatenate(([0], np.cumsum(inside)))[first].astype(np.int32)
-    slots = slots[inside]
     links = Laplacian(
         start,
-        number[operator.neighbour[slots]],
-        operator.rate[slots],
+        other[inside],
+        operator.rate[slots[inside]],
         operator.bound,
         operator.rim[order] | (np.diff(start) < np.diff(operator.start)[order]),
+        parts,
     )
     # A patch that is a whole island, cut where another began, may leave stars that tell nothing.
     fields = on.points[order], on.fields[order], on.areas[order]
@@ -56,11 +59,12 @@ def patches(on: Surface) -> tuple[Surface, BoolArray]:
 @compiled()
 def _grow(
     start: IndexArray, neighbour: IndexArray, seeds: IndexArray, size: int, patches: int
-) -> tuple[IndexArray, BoolArray]:
-    """Return the vertices of patches grown ring by ring, and which are far from the rim."""
+) -> tuple[IndexArray, BoolArray, IndexArray]:
+    """Return the vertices of patches grown ring by ring, which are far from the rim, and parts."""
     seen = np.zeros(len(start) - 1, np.bool_)
     order = np.empty(size * patches, np.int32)
     inner = np.zeros(size * patches, np.bool_)
+    parts = [np.int32(0)]
     filled = 0
     for seed in seeds:
         if seen[seed] or filled == len(order):
@@ -80,4 +84,5 @@ def _grow(
             at += 1
         # A disc of 3,000 vertices has a radius of 31 spacings; its inner quarter ends 15 inside.
         inner[first : first + max(1, (filled - first) // 4)] = True
-    return order[:filled], inner[:filled]
+        parts.append(np.int32(filled))
+    return order[:filled], inner[:filled], np.array(parts)

@@ -16,6 +16,7 @@ from lutcore.error_terms import Known, Spread, Where, errors, irradiances
 from lutcore.facets import facets, in_frames
 from lutcore.fresnel import hinges_of, transmittance
 from lutcore.lut import PsiTable
+from lutcore.shadow_doubt import doubt_of_softening
 
 if TYPE_CHECKING:
     from lutcore.curvature import PrincipalCurvatures
@@ -138,6 +139,9 @@ class Scene:
         See `lutcore.lights.pack`.
     table : PsiTable
         Of the material and the profile.
+    shares : ndarray, shape=(l, n, 3), optional
+        Of each light, what the shadows that local models are given leave; None if nothing casts
+        any.
     """
 
     points: FloatArray
@@ -156,6 +160,7 @@ class Scene:
     radius: float
     lights: FloatArray
     table: PsiTable
+    shares: FloatArray | None = None
 
     @classmethod
     def of(cls, inputs: "ShadingInputs", curvatures: "PrincipalCurvatures") -> "Scene":
@@ -195,6 +200,7 @@ class Scene:
             radius=found.radius * size,
             lights=inputs.lights,
             table=inputs.table,
+            shares=_shares(inputs),
         )
 
     def at(self, chosen: NDArray[np.integer[Any]]) -> "Scene":
@@ -225,6 +231,7 @@ class Scene:
             bare=self.bare[chosen],
             grain=self.grain[chosen],
             corner=self.corner[chosen],
+            shares=None if self.shares is None else self.shares.take(chosen, axis=1),
         )
 
     @property
@@ -261,7 +268,11 @@ class Scene:
             irradiance; 0 without a normal. Without lights the largest over all directions of one
             light of unit irradiance.
         """
-        return self.bound(model, model.shares * np.array(list(WEIGHTS.values())))
+        found = self.bound(model, model.shares * np.array(list(WEIGHTS.values())))
+        if self.shares is not None:
+            given = self.points, self.shaded, self.lights, self.shares, self.entering
+            found += doubt_of_softening(*given)
+        return found
 
     def facets(self, tolerance: float) -> FloatArray:
         """Return how wrong a model will be that gathers light from the mesh itself.
@@ -328,4 +339,18 @@ class Scene:
             len(self.shaded) > 1,
         )
         known = Known(near.max(axis=2), BENDS.index(model.bend), weights)
-        return errors(where, self.lights, optics, known)
+        if self.shares is None:
+            return errors(where, self.lights, optics, known)
+        # What a light that is kept away would do wrong, it does not.
+        each = [
+            errors(where, self.lights[i : i + 1], optics, known) for i in range(len(self.lights))
+        ]
+        return np.asarray(np.einsum("lnc,lnc->nc", self.shares, each))
+
+
+def _shares(inputs: "ShadingInputs") -> FloatArray | None:
+    """Return what cast shadows leave of each light, by channel, where there are some."""
+    found = inputs.visibility if inputs.softened is None else inputs.softened
+    if found is None or not len(found):
+        return None
+    return np.repeat(found[:, :, None], 3, axis=2) if found.ndim == 2 else found

@@ -8,10 +8,10 @@ is independent from star to star.
 import numpy as np
 from numba import prange
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Surface
-from lutcore.lowpass import SingleArray, low_pass
+from lutcore.lowpass import low_pass
 from lutcore.tensors import in_space, in_tangent_plane
 
 # Scale of the averaging, in spacings. It is left out where the fit itself was made at less than

@@ -3,14 +3,12 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, SingleArray
 
 if TYPE_CHECKING:
     from lutcore.lut import PsiTable
 
-SingleArray = NDArray[np.float32]
 
 COLUMNS, ROWS = 128, 64
 """Cells along the cosine, and along the bend of each channel: few enough to stay in the cache.

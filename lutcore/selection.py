@@ -4,13 +4,12 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray
+from lutcore.arrays import FloatArray, SingleArray
 from lutcore.bands import INTERIOR, Bands, bands
 from lutcore.borrowing import borrow
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
 from lutcore.curvature import PrincipalCurvatures
-from lutcore.lowpass import SingleArray
 from lutcore.progress import Progress, silent, tell
 from lutcore.refinement import refined
 from lutcore.rims import jet_radius, jets_at
@@ -113,8 +112,9 @@ def select(
         One value for each vertex, with the scale that was used there.
     """
     tell(progress, 0.0, "telling noise from bias")
-    tensors, square, cost, used, lean, found = _chosen(on, smoothed, lengths, precision, steadiness)
     typical = _typical_square(smoothed)
+    floor = precision * precision * typical
+    tensors, square, cost, used, lean, found = _chosen(on, smoothed, lengths, floor, steadiness)
     rim = found.place <= _RIM
     jets = np.empty(0, np.int32)
     if lengths is None:
@@ -162,17 +162,18 @@ def scales_chosen(
     ndarray, shape=(n,)
         Mesh units; -1 where every star has closed.
     """
-    return _chosen(on, smoothed, None, precision, steadiness)[3]
+    floor = precision * precision * _typical_square(smoothed)
+    return _chosen(on, smoothed, None, floor, steadiness)[3]
 
 
 def _chosen(
     on: Surface,
     smoothed: Smoothed,
     lengths: FloatArray | float | None,
-    precision: float,
+    floor: float,
     steadiness: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, Bands]:
-    """Return what `_mix` does, and what it was judged by."""
+    """Return what `_mix` does, and what it was judged by; `floor` is of the squared error."""
     found = bands(on, smoothed)
     wanted = np.zeros(len(on.fields))  # 0: let the vertex choose
     if lengths is not None:
@@ -186,7 +187,7 @@ def _chosen(
         *found,
         np.array(smoothed.scales[:-1]),
         wanted,
-        precision * precision * _typical_square(smoothed),
+        floor,
         steadiness,
         1.0 / on.spacing,
         float(np.interp(kept, _ALIKE, (_JOINED, 1.0))),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lutcore.arrays import FloatArray, IndexArray, finite
+from lutcore.arrays import AnyArray, FloatArray, IndexArray, finite
 from lutcore.baking import USUAL, bake, resolved
 from lutcore.convexity import convex_part
 from lutcore.curvature import PrincipalCurvatures
@@ -124,6 +124,9 @@ class ShadingModel(Parameters, ABC):
     growth: ClassVar[str] = "n"
     """How its time grows with the number n of vertices: n (and of lights), n log n or n^2."""
 
+    reference: ClassVar[bool] = False
+    """Whether it is what others are checked against."""
+
     aim: ClassVar[str] = ""
     """What it comes near to in place of the profile integrated over the surface, if it does."""
 
@@ -142,6 +145,23 @@ class ShadingModel(Parameters, ABC):
         ndarray, shape=(n, 3)
             Radiant exitance, linear RGB, before the exit Fresnel factor.
         """
+
+    def shade_at(self, inputs: ShadingInputs, vertices: AnyArray) -> FloatArray:
+        """Compute what leaves the surface at some vertices, of a model that is not local.
+
+        Parameters
+        ----------
+        inputs : ShadingInputs
+            Of the whole mesh.
+        vertices : ndarray of int, shape=(m,)
+            Indices.
+
+        Returns
+        -------
+        ndarray, shape=(m, 3)
+            What `shade` gives there, within its own tolerance. A model may have a shorter way.
+        """
+        return self.shade(inputs)[vertices]
 
     def shade_channel(self, inputs: ShadingInputs, channel: int) -> FloatArray:
         """Compute what leaves the surface in one channel, for a surface that each sees otherwise.

@@ -18,9 +18,10 @@ from lutcore.bvh import Bvh, bvh, stopped
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import surface
 from lutcore.lights import light_at
-from lutcore.lowpass import FIELDS, low_pass
+from lutcore.lowpass import low_pass
 from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress, part, silent, tell
+from lutcore.recurrence import FIELDS
 from lutcore.weld import weld
 
 # Duplicated vertices lie in faces of their twins: hits nearer than this share of an edge are own.

@@ -77,8 +77,7 @@ def _check(choice: "Choice") -> str:
     from lutcore.checking import CONFIDENCE
 
     if choice.coverage.reason:
-        left = ", which knows no cast shadows" if choice.shadowed else ""
-        return f"not checked: {choice.coverage.reason}; the prediction decides{left}"
+        return f"not checked: {choice.coverage.reason}; the prediction decides"
     vertices = [rung.checked.vertices for rung in choice.rungs if rung.checked]
     least, most = min(vertices, default=0), max(vertices, default=0)
     many = f"{most:,}" if least == most else f"{least:,} to {most:,}"

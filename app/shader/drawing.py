@@ -13,10 +13,9 @@ from app.camera import axes
 from app.session import Camera, Session, Vector
 from app.shader import glsl
 from app.shader.look import PixelLook, packed
-from lutcore.response_table import SingleArray
 
 if TYPE_CHECKING:
-    from lutcore.arrays import AnyArray
+    from lutcore.arrays import AnyArray, SingleArray
 
 _DECLARED, _DONE = "//VTK::Normal::Dec", "//VTK::Normal::Impl"
 _TEXTURES, _COLOR = "//VTK::TCoord::Dec", "//VTK::Light::Impl"

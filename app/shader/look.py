@@ -13,8 +13,8 @@ from app.session import Camera, Session
 from app.shader.packing import Packing
 from app.shader.vertices import forms, rows, second
 from app.steps.subject import Subject
-from lutcore.arrays import FloatArray
-from lutcore.response_table import SingleArray, halfway, response
+from lutcore.arrays import FloatArray, SingleArray
+from lutcore.response_table import halfway, response
 
 if TYPE_CHECKING:
     from lutcore.lut import PsiTable

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.shader.packing import Packing
-from lutcore.arrays import FloatArray
-from lutcore.response_table import SingleArray
+from lutcore.arrays import FloatArray, SingleArray
 
 if TYPE_CHECKING:
     from lutcore.lut import PsiTable

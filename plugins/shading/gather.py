@@ -25,6 +25,7 @@ class Gather(ShadingModel):
     """
 
     local: ClassVar[bool] = False
+    reference: ClassVar[bool] = True
     growth: ClassVar[str] = "n^2"
 
     def shade(self, inputs: ShadingInputs) -> FloatArray:

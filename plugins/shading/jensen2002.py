@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lutcore.arrays import FloatArray
-from lutcore.gather.exitance import gathered
+from lutcore.arrays import AnyArray, FloatArray
+from lutcore.gather.exitance import gathered, hierarchy
 from lutcore.parameters import param
 from lutcore.prediction import Scene
+from lutcore.progress import part
 from lutcore.shading import ShadingInputs, ShadingModel, model_registry
 
 _FINER = 0.001
@@ -41,6 +42,12 @@ class Jensen2002(ShadingModel):
     def shade(self, inputs: ShadingInputs) -> FloatArray:
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         return gathered(inputs, self.tolerance)
+
+    def shade_at(self, inputs: ShadingInputs, vertices: AnyArray) -> FloatArray:
+        """Compute it at some vertices; see `ShadingModel.shade_at`."""
+        told = inputs.progress
+        light = hierarchy(inputs, self.tolerance, part(told, 0.0, 0.5))
+        return light.at(inputs.points[vertices], part(told, 0.5, 1.0))
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""

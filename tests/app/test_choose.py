@@ -115,7 +115,7 @@ def test_shadows_that_the_scene_casts_are_in_the_check(capsys: pytest.CaptureFix
     assert "without them what is chosen would be off by" in text
     assert "too much" in text
     assert main([*asked, "--shadows", "on", "--predicted-only"]) == 0
-    assert "which knows no cast shadows" in capsys.readouterr().out
+    assert "the prediction decides" in capsys.readouterr().out
 
 
 def test_metric_and_tolerance_are_checked(ball: str) -> None:

@@ -51,7 +51,7 @@ STAGES = {
     "_principal": "lutcore.selection._principal",
 }
 # A part of two stages: the products with the Laplacian that `low_pass` and `refined` make.
-PRODUCTS = ("lutcore.lowpass._step", "lutcore.lowpass._add_step")
+PRODUCTS = ("lutcore.lowpass.step", "lutcore.lowpass.add_step")
 # The scales are tried on small patches by the same functions: those calls are not the mesh's.
 TRIAL = "rungs"
 TRIAD = 20_000_000  # elements; 480 MB
@@ -105,10 +105,10 @@ LOOPS: dict[str, Counter] = {
     "lutcore.rings._joined": rewriting(),
     "lutcore.laplacian._rates": rewriting(),
     "lutcore.laplacian._relative_to_largest": rewriting(1),
-    "lutcore.lowpass._apply": rewriting(),
-    "lutcore.lowpass._begin": rewriting(),
-    "lutcore.lowpass._step": rewriting(4),
-    "lutcore.lowpass._add_step": adding_bytes,
+    "lutcore.lowpass.apply": rewriting(),
+    "lutcore.lowpass.begin": rewriting(),
+    "lutcore.lowpass.step": rewriting(4),
+    "lutcore.lowpass.add_step": adding_bytes,
     "lutcore.cosmoothing.fit_shape_operators": rewriting(),
     "lutcore.bands._energies": rewriting(),
     "lutcore.bands._average": rewriting(),

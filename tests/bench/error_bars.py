@@ -25,8 +25,9 @@ from lutcore.cosmoothing import surface
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diagnostics import diagnose, vertex_scales
 from lutcore.estimation import principal_curvatures
-from lutcore.lowpass import FIELDS, low_pass
+from lutcore.lowpass import low_pass
 from lutcore.mesh import TriangleMesh
+from lutcore.recurrence import FIELDS
 from lutcore.weld import weld
 
 Make = Callable[..., Exact]

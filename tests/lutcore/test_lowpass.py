@@ -6,10 +6,12 @@ from scipy.sparse import csr_matrix
 from lutcore import analytic
 from lutcore.cosmoothing import surface
 from lutcore.lowpass import _filter, _strengths, degree, low_pass
+from lutcore.mesh import TriangleMesh
+from lutcore.patches import patches
 
 
 def matrix(on):
-    start, neighbour, rate, bound, _ = on.operator
+    start, neighbour, rate, bound, _, _ = on.operator
     weights = csr_matrix((0.5 * bound * rate.astype(float), neighbour, start))
     return (csr_matrix(np.diag(np.asarray(weights.sum(axis=1)).ravel())) - weights).toarray()
 
@@ -98,3 +100,30 @@ def test_a_longer_scale_takes_proportionally_more_products():
     ratio = [degree(s, 16.0) / s for s in (4.0, 8.0, 16.0, 160.0)]
     assert max(ratio) / min(ratio) < 1.1
     assert ratio[0] < 9.0
+
+
+def test_parts_without_common_edges_are_smoothed_as_the_whole():
+    first, second = analytic.torus(400, irregular=True).mesh, analytic.saddle(900).mesh
+    count = len(first.vertices)
+    both = TriangleMesh(
+        np.concatenate([first.vertices, second.vertices + 9.0]),
+        np.concatenate([first.faces, second.faces + count]),
+    )
+    on = surface(both)
+    scales = [1.5 * on.spacing, 6.0 * on.spacing]
+    parts = np.array([0, count, len(both.vertices)], np.int32)
+    apart = low_pass(on.operator._replace(parts=parts), on.fields, scales)
+    np.testing.assert_array_equal(apart, low_pass(on.operator, on.fields, scales))
+
+
+def test_patches_that_meet_are_cut_apart():
+    on = surface(analytic.torus(9_500).mesh)
+    tried, inner = patches(on)  # three discs of 3,000 cover nearly all of it
+    parts = tried.operator.parts
+    assert np.diff(parts)[:2].tolist() == [3_000, 3_000]
+    assert parts[-1] == len(inner) == len(tried.fields)
+    owner = np.repeat(np.arange(len(inner)), np.diff(tried.operator.start))
+    disc = np.searchsorted(parts, [owner, tried.operator.neighbour], side="right")
+    np.testing.assert_array_equal(*disc)
+    # Where they were cut is a rim.
+    assert np.count_nonzero(tried.operator.rim) > 200
