@@ -161,6 +161,7 @@ def at(inputs: ShadingInputs, chosen: NDArray[np.integer[Any]]) -> ShadingInputs
             detail,
             normals=detail.normals.take(chosen, axis=1),
             shape=detail.shape.take(chosen, axis=1),
+            variance=detail.variance.take(chosen, axis=1),
             bare=detail.bare[chosen],
         )
     return replace(

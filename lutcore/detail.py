@@ -50,6 +50,8 @@ class Detail:
         Outward unit normals by channel; zero where a vertex has no face.
     shape : ndarray, shape=(3, n, 6)
         Convex part S+ of the shape operator by channel, 1/mm, as `ShadingInputs.shape`.
+    variance : ndarray, shape=(3, n)
+        That of the normals within what light sees, 1 - |mean|^2, by channel.
     bare : ndarray, shape=(n, 3)
         Outward unit normals with all detail, means over the faces around each vertex by area, for
         models that blur it themselves: those that are not local.
@@ -65,6 +67,7 @@ class Detail:
 
     normals: FloatArray
     shape: FloatArray
+    variance: FloatArray
     bare: FloatArray
     widths: FloatArray
     scale: float
@@ -124,7 +127,7 @@ def detail_seen(
     glow = bake(substance, profile=spreading).glow / size
     if welded.mesh is None:
         none, flat = np.zeros((3, count, 3)), np.zeros((3, count, 6))
-        return Detail(none, flat, none[0], widths, glow, none[0])
+        return Detail(none, flat, none[..., 0], none[0], widths, glow, none[0])
     extent = welded.mesh.diagonal
     shares = np.minimum(1.0, _WIDEST * extent / widths)
     sized, unit = sized_to_one(welded.mesh)
@@ -140,7 +143,7 @@ def detail_seen(
     # S+ of a channel goes where its smoothed fields were, which are as large and done with then:
     # memory that is touched first costs most here.
     convex = change[:6].reshape(-1).view(np.float64).reshape(3, -1, 6)
-    normals = np.empty((3, count, 3))
+    normals, variance = np.empty((3, count, 3)), np.empty((3, count))
     room = _Room.of(len(on.points))
     for channel in range(3):
         tell(progress, 0.9 + channel / 30.0, "fitting shape operators")
@@ -148,13 +151,15 @@ def detail_seen(
         _geometry(on, change[2 * channel : 2 * channel + 2], facing, room)
         if welded.moved:
             normals[channel] = welded.spread(facing, 0.0)
+        _variance(on.fields, change, 2 * channel, room.error)
+        variance[channel] = welded.spread(room.error, 0.0)
         _convex_part(facing, room.tensors, 1.0 / (unit * size), convex[channel])
     shape = convex
     if welded.moved:
         shape = np.stack([welded.spread(one, 0.0) for one in convex])
     bare = np.ascontiguousarray(welded.spread(on.fields[:, 3:], 0.0))
     smooth = welded.spread(smoothed_normals(on.fields, change, len(filters) - 1), 0.0)
-    return Detail(normals, shape, bare, shares * widths, scale, smooth)
+    return Detail(normals, shape, variance, bare, shares * widths, scale, smooth)
 
 
 def _passing(
@@ -201,6 +206,17 @@ def _geometry(on: Surface, change: SingleArray, normals: FloatArray, room: _Room
     told = np.ones(len(weak), np.bool_)
     room.error[:] = 1.0
     borrow(*links, normals, weak, told, room.tensors, room.error, np.ones(len(weak)))
+
+
+@compiled(parallel=True)
+def _variance(fields: FloatArray, change: SingleArray, base: int, out: FloatArray) -> None:
+    """Write what the squares of the lengths of the normals' means lack of 1."""
+    for i in prange(len(out)):
+        square = 0.0
+        for axis in range(3, 6):
+            mean = fields[i, axis] + change[base, i, axis]
+            square += mean * mean
+        out[i] = max(1.0 - square, 0.0)
 
 
 @compiled(parallel=True)

@@ -5,9 +5,9 @@ l_u, the exitance of a curved surface is to second order
 
     M = E(a) + G(b) - X + Y,    a = N.w,  E(a) = c F_t(c),  c = max(a, 0),  b = |S+ w_t|,
     G(b) = sum_j w_j b psi(|a - c_j|/b),    X ~ E2/(1 + E2) (E + G),
-    Y ~ <r^2>/4 |grad(k1 + k2).w|,
+    Y ~ <r^2>/4 E'(a) grad(k1 + k2).w,
 
-because the Laplacian of the normal is -grad(k1 + k2) - (k1^2 + k2^2) N. On a mesh
+because the Laplacian of the normal is grad(k1 + k2) - (k1^2 + k2^2) N. On a mesh
 
     h = <r^2>/(<r^2> + A)
 
@@ -18,27 +18,40 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
 - second: X; anisotropy: its part with (k1 - k2)^2, for models that know one curvature;
 - higher: e^2, e = E2/(1 + E2), or that of a ball of the body's volume over its area, where that is
   more: light that goes through the body;
-- third: Y, less what the error bar makes of the gradient; concave: G of the concave part of S;
-- corner: what is known of the light at a corner of flat facets, with its sign,
+- third: the size of Y with E' = 1, less what the error bar makes of the gradient; concave: G of the
+  concave part of S;
+- corner: what is known with its sign,
 
-      |D (E + G) h_D + s (E(a) - E(a_0)) + BENT (1 - h)^4 B|,
+      |D (E + G) h_D + s (E(a) - E(a_0)) + (1 - h^(1/2))^2 B/8 - Y|,
 
-  and a share of the three without it:
+  where
 
   D is the share of 2 pi that the angles at the vertex lack. Light that crosses no facet comes out
   of these angles alone; h_D is 1 there and less where light comes from further. a_0 = N_0.w is that
   of the bare normal N_0, the facets' mean by area. One scale for all channels smooths what light
   does not blur: s ~ 1 - h^(1/2), as far as facets are rougher than curvature makes them. Normals by
   channel smooth somewhat less than light does: s ~ -(1 - h)/h^(1/2), small as E(a) - E(a_0) is
-  there. B is by how much E bends over a facet, of which gathered light, linear over patches, has
-  the integral right and not the value at the corner; what bends more is cut, so B fades;
+  there. B is by how much E bends from end to end of a facet's sides e and back,
+
+      B = E(a + d) + E(a - d) - (2 + tr S T S) E(a),  d^2 = w.S T S w,  T = <e e^T>:
+
+  the middles of the sides are off the mean of their ends by B/8, of which gathered light, linear
+  over patches, has the integral right and not the value at the corner. It tells the less the
+  farther light crosses the facet, and what bends more is cut, so B fades. Nor has it Y right there:
+  along a side light rises by half the gradient's share at once, as if <r^2> were larger by
+  _CHORD (<r^2> A)^(1/2). Y is small, or the gradient does not last as far as light reaches;
 - base: what references and tables resolve;
 - bumps: (2 r)^(1/2) h^(1/2) less a share of h, r the mean of 1 - cos between the facets and N_0
-  beyond what curvature makes of it: light blurs facets that no normal follows;
+  beyond what curvature makes of it: light blurs facets that no normal follows. Half of it where
+  normals are those by channel: they do follow;
 - residue: E2/(1 + E2) alone, for tables that are off in the dark;
 - beside: G(b*) - G(b), b* what curvature may be beside the vertex: from its size where it turns the
   normal within reach, its error bar, and its gradient over <r^2>^(1/2). What is flat or hollow here
   and faces away may have a lit ridge within reach; third and bumps fade into the dark by b*, too;
+- strays: v, by which normals stray within what light sees beyond what curvature makes of it, their
+  variance less <r^2>/2 (k1^2 + k2^2): what is flat in the mean may have lit and dark parts;
+- unsure: the same four parts without their signs, twice where facets are rough: where they cancel,
+  what is off in each is left;
 - least: no light's error is foreseen to be less.
 
 psi is not looked up: psi(0)/(1 + u/L)^8, of the same value at 0 and the same integral, costs no
@@ -65,21 +78,26 @@ _SIZE, _CHANGE = 2.32, 1.07
 _NOISE_OF_SLOPE = 3.0
 # Of e for the whole body.
 _THROUGH = 0.6
-# h_D = (1 - _FARTHER h) h/(h + _SEEN).
-_FARTHER, _SEEN = 0.416, 0.002
+# h_D = 1 - _FARTHER h.
+_FARTHER = 0.416
 # Share of 1 - h^(1/2), and of (1 - h)/h^(1/2), that s is.
 _ONE_SCALE, _BY_CHANNEL = 1.31, 0.523
 _LEAST_CROSSED = 1e-3
-# Mean of 1 - cos that curvature makes of facets, over A (k1^2 + k2^2), and twice what roughness
-# beyond it has to be, for normals of one scale to have smoothed something.
-_EXPLAINED, _SMOOTHED = 0.18, 0.062
-BENT, CUT = 0.0685, 0.0134
+# Mean of 1 - cos that curvature makes of facets, over tr S T S, and twice what roughness beyond it
+# has to be, for normals of one scale to have smoothed something.
+_EXPLAINED, _SMOOTHED = 0.31, 0.107
+BENT, CUT = 0.125, 0.018
 """Share of B that is off, and the B beyond which gathered light is cut."""
-UNSURE = 0.182
-"""Share of each part of what is known at a corner that may be otherwise."""
-
+# How steep E is, is read off over this much at least of N.w.
+_SECANT = 0.02
+# Share of (<r^2> A)^(1/2) that counts as <r^2> in Y, and by how much Y lessens itself.
+_CHORD, _LASTS = 0.45, 35.0
 # How bumps fade where light crosses facets, and into the dark: with L angles, and with b*.
 _BLURRED, _TURNED, _WIDER = 0.655, 0.482, 2.03
+# Share of them where normals follow what light sees.
+_FOLLOWED = 0.5
+# By how much what strays is turned to the light.
+_STRAYED = 3.2
 # Cosines of the light among which the worst is sought where no light is known: the error is
 # largest near the terminator, where F_t bends most, or straight above.
 _WORST = np.array([-0.5, -0.2, -0.05, 0.0, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0])
@@ -90,12 +108,14 @@ class Where(NamedTuple):
 
     points: FloatArray
     normals: FloatArray
+    variance: FloatArray
     bare: FloatArray
     curvatures: FloatArray
     directions: FloatArray
     error: FloatArray
     slope: FloatArray
     facet: FloatArray
+    sides: FloatArray
     grain: FloatArray
     corner: FloatArray
     radius: float
@@ -182,7 +202,8 @@ def _read(curve: FloatArray, cosine: float) -> float:
 
 @compiled()
 def _still(
-    at: tuple[float, float, float, float, float, float, float],
+    at: tuple[float, ...],
+    variance: float,
     spread: tuple[float, float, float, float],
     radius: float,
     by_channel: bool,
@@ -190,11 +211,11 @@ def _still(
 ) -> tuple[float, ...]:
     """Return what the terms of one vertex and channel have without a light.
 
-    `at` is k1, k2, error, facet, grain, corner and the size of the slope, `spread` that of the
+    `at` is k1, k2, error, facet, grain, corner, the size of the slope and T, `spread` that of the
     channel. Returned are l_u k1, l_u k2, what b*^2 has beyond b^2, what counts times E + G, what
-    counts everywhere, <r^2> in mm^2, what of the gradient may be noise, D h_D, s, the error of
-    bumps, by how much they turn what is dark to the light, A^(1/2)/l_u, A (k1^2 + k2^2) and the
-    share of B.
+    counts everywhere, <r^2>/4 in mm^2, what the mesh makes of it, what of the gradient may be
+    noise, D h_D, s, the error of bumps, by how much they turn what is dark to the light, both of
+    what strays, S T S, the share of B and that of what is unsure.
     """
     length, _, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
@@ -214,27 +235,35 @@ def _still(
     everywhere = parts[3] * through * through + parts[9] * e2
     h = reach / (reach + facet)
     root, rest = np.sqrt(h), 1.0 - h
-    rougher = 2.0 * max(0.0, at[4] - _EXPLAINED * facet * both)
+    bent, bent_beside = at[7] * at[0] * at[0], at[9] * at[1] * at[1]
+    turns = bent + bent_beside
+    rougher = 2.0 * max(0.0, at[4] - _EXPLAINED * turns)
+    rough = rougher / (rougher + _SMOOTHED * turns + 1e-12)
     if by_channel:
         s = -_BY_CHANNEL * rest / np.sqrt(h + _LEAST_CROSSED)
     else:
-        s = _ONE_SCALE * (1.0 - root) * rougher / (rougher + _SMOOTHED * facet * both + 1e-12)
-    angle = np.sqrt(rougher)
+        s = _ONE_SCALE * (1.0 - root) * rough
+    angle, strays = np.sqrt(rougher), np.sqrt(max(0.0, variance - 0.5 * turned))
     return (
         k1,
         k2,
         beyond,
         share,
         everywhere,
-        reach,
+        0.25 * reach,
+        0.25 * (reach + _CHORD * np.sqrt(reach * facet) * rest),
         _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300),
-        at[5] * (1.0 - _FARTHER * h) * h / (h + _SEEN),
+        at[5] * (1.0 - _FARTHER * h),
         s,
-        parts[8] * angle * root * (1.0 - _BLURRED * h),
+        parts[8] * angle * root * (1.0 - _BLURRED * h) * (_FOLLOWED if by_channel else 1.0),
         _TURNED * per_width * angle,
-        np.sqrt(facet) / length,
-        facet * both,
-        BENT * rest * rest * rest * rest,
+        parts[11] * strays,
+        _STRAYED * per_width * strays,
+        bent,
+        at[8] * at[0] * at[1],
+        bent_beside,
+        BENT * (1.0 - root) * (1.0 - root),
+        parts[12] * (1.0 + rough),
     )
 
 
@@ -258,8 +287,8 @@ def _error(
     """
     a, bare, u, v, steep = way
     _, psi_0, per_width, _ = spread
-    k1, k2, beyond, share, everywhere, reach, noise = still[:7]
-    corner, s, bumps, turned, step, bent, off_by = still[7:]
+    k1, k2, beyond, share, everywhere, reach, on_mesh, noise = still[:8]
+    corner, s, bumps, turned, strays, strayed, bent, across, bent_beside, off_by, doubt = still[8:]
     p, q = max(k1, 0.0), max(k2, 0.0)
     convex = (p * u) ** 2 + (q * v) ** 2
     concave = ((k1 - p) * u) ** 2 + ((k2 - q) * v) ** 2
@@ -284,19 +313,28 @@ def _error(
     # Next to the terminator a mesh and a table resolve no less than elsewhere.
     edge_ = 1.0 / (1.0 + (a / _EDGE) ** 2)
     error += share * lit + everywhere + parts[7] * 1.5 * edge_ * edge_
-    third = 0.25 * reach * max(0.0, abs(steep) - noise)
+    changes = max(0.0, abs(steep) - noise)
+    third = reach * changes
     error += parts[4] * third / (1.0 + third) * _fall(a, beside, per_width)
     error += parts[5] * _glow(a, np.sqrt(concave), psi_0, per_width, w, corners)
-    width = step * np.sqrt(convex + concave)
-    bends = _read(entering, a + width) + _read(entering, a - width) - (2.0 + bent) * straight
+    width = np.sqrt(max(bent * u * u + 2.0 * across * u * v + bent_beside * v * v, 0.0))
+    secant = max(width, _SECANT)
+    before, after = _read(entering, a - secant), _read(entering, a + secant)
+    bends = (before + after - 2.0 * straight) * (width / secant) ** 2
+    bends -= (bent + bent_beside) * straight
     bends /= 1.0 + (bends / CUT) ** 2
+    rises = on_mesh * changes * (after - before) / (2.0 * secant)
+    rises /= 1.0 + _LASTS * abs(rises)
+    if steep < 0.0:
+        rises = -rises
     sloped = s * (straight - _read(entering, bare))
     lacking, bent_by = corner * lit, off_by * bends
-    unsure = abs(lacking) + abs(sloped) + abs(bent_by)
-    error += parts[6] * (abs(lacking + sloped + bent_by) + UNSURE * unsure)
+    unsure = abs(lacking) + abs(sloped) + abs(bent_by) + abs(rises)
+    error += parts[6] * abs(lacking + sloped + bent_by - rises) + doubt * unsure
     error += bumps * _fall(a, _WIDER * beside + turned, per_width)
     error += parts[10] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
-    return min(max(error, parts[11]), 1.0)
+    error += strays * _fall(a, beside + strayed, per_width)
+    return min(max(error, parts[13]), 1.0)
 
 
 @compiled(parallel=True)
@@ -319,9 +357,10 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     ndarray, shape=(n, 3)
         In R_d and the lights' unit of irradiance, at most 1 for each light; 0 without a normal.
     """
-    points, normals, bare, directions = on.points, on.normals, on.bare, on.directions
+    points, normals, variance = on.points, on.normals, on.variance
+    bare, directions = on.bare, on.directions
     k, noise, slope, facet = on.curvatures, on.error, on.slope, on.facet
-    grain, corner = on.grain, on.corner
+    sides, grain, corner = on.sides, on.grain, on.corner
     length, psi_0, per_width, square = of.length, of.psi_0, of.per_width, of.square
     w, corners, entering = of.weights, of.corners, of.entering
     radius, by_channel, bend, off, parts = on.radius, on.by_channel, by.bend, by.off, by.parts
@@ -329,7 +368,8 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
     for i in prange(len(points)):
         steepest = np.sqrt(slope[i, 0] ** 2 + slope[i, 1] ** 2 + slope[i, 2] ** 2)
         place = (points[i, 0], points[i, 1], points[i, 2])
-        at = (k[i, 0], k[i, 1], noise[i], facet[i], grain[i], corner[i], steepest)
+        around = (noise[i], facet[i], grain[i], corner[i], steepest)
+        at = (k[i, 0], k[i, 1], *around, sides[i, 0], sides[i, 1], sides[i, 2])
         for c in range(3):
             n = min(c, len(normals) - 1)
             nx, ny, nz = normals[n, i, 0], normals[n, i, 1], normals[n, i, 2]
@@ -337,7 +377,7 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
                 continue
             spread = (length[c], psi_0[c], per_width[c], square[c])
             fresnel = (w[c], corners[c], entering[c], off[c])
-            still = _still(at, spread, radius, by_channel, parts)
+            still = _still(at, variance[n, i], spread, radius, by_channel, parts)
             total = 0.0
             for light in range(len(lights)):
                 x, y, z, strength = light_at(lights, light, *place)
@@ -355,9 +395,9 @@ def errors(on: Where, lights: FloatArray, of: Spread, by: Known) -> FloatArray:
                 for a in _WORST:
                     sine = np.sqrt(1.0 - a * a)
                     lean = sine * np.sqrt(gap)
-                    for side in (a - lean, a + lean):
+                    for up in (-1.0, 1.0):
                         for u, v in ((sine, 0.0), (0.0, sine)):
-                            way = (a, side, u, v, steepest * sine)
+                            way = (a, a + up * lean, u, v, up * steepest * sine)
                             error = _error(way, still, spread, bend, *fresnel, parts)
                             total = max(total, error)
             out[i, c] = total

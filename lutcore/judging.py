@@ -280,7 +280,9 @@ class Judge:
             error=of.error / factor,
             slope=of.slope / factor**2,
             facet=of.facet * factor**2,
+            sides=of.sides * factor**2,
             radius=of.radius * factor,
+            variance=of.variance / factor**2,
         )
         errors = model.predicted_error(larger)
         return errors is not None and self.tolerance.score(self.judged(errors)) <= (

@@ -189,11 +189,25 @@ def in_tangent_plane(
         Entries xx, xy, yy in the normal's `tangent_frame`.
     """
     u, v = tangent_frame(normal[0], normal[1], normal[2])
-    return _between(t, u, u), _between(t, u, v), _between(t, v, v)
+    return between(t, u, u), between(t, u, v), between(t, v, v)
 
 
 @compiled()
-def _between(t: FloatArray | tuple[float, ...], p: Vector, q: Vector) -> float:
+def between(t: FloatArray | tuple[float, ...], p: Vector, q: Vector) -> float:
+    """Return p.T q.
+
+    Parameters
+    ----------
+    t : ndarray, shape=(6,), or tuple of 6 floats
+        Entries xx, xy, xz, yy, yz, zz of a symmetric T.
+    p, q : tuple of float
+        Vectors.
+
+    Returns
+    -------
+    float
+        The product.
+    """
     return (
         t[0] * p[0] * q[0]
         + t[1] * (p[0] * q[1] + p[1] * q[0])

@@ -84,11 +84,15 @@ QUICK = {"bumps": (bumpy, (1.5,))}
 def same_for_all(mesh: TriangleMesh, found: list[PrincipalCurvatures], size: float) -> Detail:
     """Return what channels see whose normals and curvature were estimated at a scale of each."""
     inputs = [shading_inputs(mesh, one, "skin1", LIGHTS, size) for one in found]
+    normals = inputs[0].normals
     return Detail(
-        np.array([one.normals for one in inputs]),
-        np.array([one.shape for one in inputs]),
-        inputs[0].normals,
-        np.zeros(3),
+        normals=np.array([one.normals for one in inputs]),
+        shape=np.array([one.shape for one in inputs]),
+        variance=np.zeros((3, len(normals))),
+        bare=normals,
+        widths=np.zeros(3),
+        scale=0.0,
+        smooth=normals,
     )
 
 

@@ -54,7 +54,7 @@ def test_large_bodies_need_less(checked: bool) -> None:
     ball, ladder = analytic.sphere(3000), models()
     chosen = [
         choose(inputs_on(ball, mm), Tolerance(0.02), COSTS, ladder, checked=checked)
-        for mm in (10_000.0, 28.0 if checked else 60.0, 4.0)
+        for mm in (10_000.0, 28.0 if checked else 40.0, 4.0)
     ]
     labels = [one.chosen.candidate.label for one in chosen]
     assert labels == ["lambert (fresnel directional)", "curvature-lut", "jensen2002"]
@@ -145,7 +145,7 @@ def test_blend_is_each_model_where_it_is_alone() -> None:
         np.testing.assert_array_equal(shaded[alone], model.shade(inputs)[alone])
 
 
-@pytest.mark.parametrize(("checked", "mm"), [(True, 10.0), (False, 25.0)])
+@pytest.mark.parametrize(("checked", "mm"), [(True, 10.0), (False, 20.0)])
 def test_a_blend_is_chosen_where_it_pays(checked: bool, mm: float) -> None:
     body = analytic.ellipsoid(6000, axes=(12.0, 3.0, 3.0))
     costly = COSTS | {"curvature-lut": Cost(2000.0, "n")}

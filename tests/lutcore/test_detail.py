@@ -84,6 +84,11 @@ def test_a_sphere_is_seen_as_it_is(name):
         # Stars that are not symmetric tilt by the square of an edge over the radius, .005.
         np.testing.assert_allclose(normals, ball.truth.normals, atol=6e-3)
         np.testing.assert_allclose(shape, expected, atol=0.02 / 10.0)
+    # Within <r^2> = 2 widths^2 the normals turn by r/R, less where light goes round the ball.
+    within = 2.0 * np.square(seen.widths / 20.0)
+    ratio = np.median(seen.variance, axis=1) / within
+    assert np.all((ratio > 0.45) & (ratio < 1.0))
+    assert ratio[2] > 0.8
 
 
 def test_only_the_size_in_light_counts():
@@ -138,6 +143,7 @@ def test_rims_specks_and_loose_vertices_are_shaded_too():
     assert not nothing.normals.any()
     assert not nothing.smooth.any()
     assert not nothing.shape.any()
+    assert nothing.variance.shape == (3, 3)
 
 
 @pytest.mark.parametrize("order", ["regular", "random"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lutcore import analytic
-from lutcore.facets import facets
+from lutcore.facets import facets, in_frames
 from lutcore.geometry import area_normals, vertex_areas, vertex_corners
 from lutcore.mesh import TriangleMesh
 
@@ -48,6 +48,35 @@ def test_plane_is_smooth_and_lacks_nothing_at_its_border() -> None:
     np.testing.assert_allclose(found.grain, 0.0, atol=1e-12)
     assert found.area.sum() == pytest.approx(1.0)
     assert np.isinf(found.radius)
+
+
+def test_sides_are_those_of_the_facets() -> None:
+    mesh = sheet(9)
+    found = facets(mesh.vertices, mesh.faces, np.zeros(81))
+    # Every triangle has a side along x, one along y and one along both, an eighth each.
+    expected = np.array([2.0, 1.0, 0.0, 2.0, 0.0, 0.0]) / 3.0 / 64.0
+    np.testing.assert_allclose(found.sides, np.tile(expected, (81, 1)), atol=1e-15)
+    turned = np.tile([[0.0, 1.0, 0.0], [0.6, 0.0, 0.8]], (81, 1, 1))
+    in_plane = np.array([2.0, 0.6, 2.0 * 0.36]) / 3.0 / 64.0
+    np.testing.assert_allclose(
+        in_frames(found.sides, turned), np.tile(in_plane, (81, 1)), atol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        (analytic.sphere(4000, radius=3.0), 3.0),
+        (analytic.torus(4000, major=3.0, minor=1.0), 1.5),
+        (analytic.cylinder(4000, radius=2.0, length=10.0), 3.0),  # open at both ends
+    ],
+)
+def test_radius_is_thrice_volume_over_area(body: analytic.Exact, expected: float) -> None:
+    turn = np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    points = body.mesh.vertices @ turn.T + np.array([5.0, -3.0, 2.0])
+    found = facets(points, body.mesh.faces, np.zeros(len(points)))
+    assert found.radius == pytest.approx(expected, rel=0.01)
 
 
 def test_normals_and_areas_are_those_of_the_mesh() -> None:

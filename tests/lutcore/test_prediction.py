@@ -9,7 +9,7 @@ from lutcore import analytic
 from lutcore.baking import bake
 from lutcore.blend import at
 from lutcore.detail import detail_seen
-from lutcore.error_terms import BENT, CUT, DOUBT, UNSURE
+from lutcore.error_terms import BENT, CUT, DOUBT
 from lutcore.estimation import principal_curvatures
 from lutcore.exitance import exitance
 from lutcore.gather.exitance import exact
@@ -65,12 +65,29 @@ def test_bounds_most_true_errors_and_is_not_far_above(
 def test_flat_surface_leaves_only_what_is_resolved() -> None:
     body = analytic.sphere(400, radius=1e6)
     _, scene = scene_on(body, 1.0)
-    directional = model_registry.get("lambert")(fresnel="directional").predicted_error(scene)
+    # The corners of so coarse a sphere lack half a percent of their angle, and as much of the
+    # gathered light: on a flat surface none.
+    directional = model_registry.get("lambert")(fresnel="directional").predicted_error(
+        replace(scene, corner=np.zeros_like(scene.corner))
+    )
     assert directional is not None
     # 2.5 times the base is what its term can reach: c F_t is at most 1, the edge 1.5. What the
     # facets of so coarse a sphere bend by is half of what they are cut at, and no more.
-    facets = WEIGHTS["corner"] * (1.0 + UNSURE) * BENT * 0.5 * CUT
+    facets = (WEIGHTS["corner"] + WEIGHTS["unsure"]) * BENT * 0.5 * CUT
     assert directional.max() <= 2.5 * WEIGHTS["base"] + facets
+
+
+def test_corners_of_a_coarse_body_lack_light_as_they_lack_angle() -> None:
+    # Light reaches a thousandth of the facets' width.
+    inputs, scene = scene_on(analytic.sphere(400, radius=1e4), 1.0)
+    truth = exact(inputs, inputs.points)
+    error = np.abs(exitance(model_registry.get("lambert")(fresnel="directional"), inputs) - truth)
+    weights = np.array([float(term == "corner") for term in WEIGHTS])
+    known = scene.bound(Knowledge(scene.entering), weights)
+    lit = scene.normals @ np.asarray(LIGHT.direction) / np.linalg.norm(LIGHT.direction) > 0.3
+    error /= inputs.table.total
+    assert np.median(error[lit]) > 2e-3
+    assert np.median(np.abs(error - known)[lit]) < 0.1 * np.median(error[lit])
 
 
 def test_more_curvature_is_a_larger_error() -> None:
@@ -184,6 +201,57 @@ def test_noise_that_light_shows_is_known_from_the_facets(by_channel: bool) -> No
     assert np.median(error[lit]) > 3e-3
     assert np.corrcoef(error[lit], known[lit])[0, 1] > 0.8
     assert np.median(np.abs(error - known)[lit]) < 0.5 * np.median(error[lit])
+
+
+@pytest.mark.parametrize(
+    ("axes", "mm", "alike", "rest"),
+    [((4.0, 1.0, 1.0), 800.0, 0.7, 0.25), ((2.0, 1.0, 1.0), 60.0, 0.95, 0.5)],
+)
+def test_sign_and_size_of_what_a_smooth_mesh_makes_are_known(
+    axes: tuple[float, float, float], mm: float, alike: float, rest: float
+) -> None:
+    # At 800 mm it is the light in the middle of facets, four times as long as wide, off the mean of
+    # their corners; at 60 mm the gradient of curvature.
+    body = analytic.ellipsoid(6000, axes=axes)
+    inputs, scene = scene_on(body, mm)
+    chosen = np.random.default_rng(5).choice(len(body.mesh.vertices), 400, replace=False)
+    truth = exact(inputs, body.mesh.vertices[chosen])
+    scene = scene.at(chosen)
+    given = exitance(model_registry.get("monge-patch")(), at(inputs, chosen))
+    error = np.abs(given - truth) / inputs.table.total
+    weights = np.array([float(term == "corner") for term in WEIGHTS])
+    known = scene.bound(Knowledge(scene.entering), weights)
+    lit = (scene.normals @ np.asarray(LIGHT.direction) / np.linalg.norm(LIGHT.direction)) > 0.3
+    assert np.corrcoef(error[lit].ravel(), known[lit].ravel())[0, 1] > alike
+    assert np.median(np.abs(error - known)[lit]) < rest * np.median(error[lit])
+
+
+def test_dark_ground_fears_what_strays_to_the_light() -> None:
+    _, plain = scene_on(analytic.sphere(4000, radius=1e6), 1.0)
+    rough = replace(plain, variance=np.full((1, len(plain.points)), 0.04))
+    model = model_registry.get("curvature-lut")()
+    cosine = plain.normals @ np.asarray(LIGHT.direction) / np.linalg.norm(LIGHT.direction)
+    change = model.predicted_error(rough) - model.predicted_error(plain)
+    assert change.min() >= 0.0
+    lit, edge, dark = (change[np.abs(cosine - a) < 0.02] for a in (0.5, -0.1, -0.9))
+    # One of the standard deviation .2 at most, most of it just behind the terminator, none in
+    # the dark.
+    np.testing.assert_allclose(lit, 0.2 * WEIGHTS["strays"], rtol=0.1)
+    assert 0.05 < edge.min() / lit.max() < 0.8
+    assert dark.max() < 0.05 * lit.min()
+
+
+def test_normals_by_channel_of_a_smooth_body_stray_no_more_than_curvature_makes() -> None:
+    body = analytic.torus(3000, major=26.0, minor=10.0)
+    seen = detail_seen(body.mesh, "skin1", 1.0)
+    inputs = shading_inputs(body.mesh, body.truth, "skin1", [LIGHT], 1.0, detail=seen)
+    scene = Scene.of(inputs, body.truth)
+    weights = np.array([float(term == "strays") for term in WEIGHTS])
+    known = Knowledge(scene.entering)
+    none = replace(scene, variance=np.zeros_like(scene.variance))
+    assert scene.variance.max() > 1e-3
+    change = scene.bound(known, weights) - none.bound(known, weights)
+    assert np.quantile(change, 0.99) < 1e-3
 
 
 def test_normals_of_a_smooth_body_smooth_nothing() -> None:

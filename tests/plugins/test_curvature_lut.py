@@ -84,7 +84,8 @@ def test_channels_at_once_are_channels_one_by_one_to_the_last_bit(area: str, lig
     tilted = inputs.normals + 0.1 * rng.normal(size=(3, *inputs.normals.shape))
     tilted /= np.linalg.norm(tilted, axis=2, keepdims=True)
     shapes = inputs.shape * rng.uniform(0.5, 2.0, (3, len(inputs.shape), 1))
-    seen = Detail(tilted, shapes, inputs.normals, np.ones(3), 1.0, inputs.normals)
+    none = np.zeros(shapes.shape[:2])
+    seen = Detail(tilted, shapes, none, inputs.normals, np.ones(3), 1.0, inputs.normals)
     model = CurvatureLut(area=area)
     found = model.shade_detail(inputs, seen)
     assert found.max() > 0.0
