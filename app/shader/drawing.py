@@ -13,9 +13,10 @@ from app.camera import axes
 from app.session import Camera, Session, Vector
 from app.shader import glsl
 from app.shader.look import PixelLook, packed
+from lutcore.arrays import SingleArray
 
 if TYPE_CHECKING:
-    from lutcore.arrays import AnyArray, SingleArray
+    from lutcore.arrays import AnyArray
 
 _DECLARED, _DONE = "//VTK::Normal::Dec", "//VTK::Normal::Impl"
 _TEXTURES, _COLOR = "//VTK::TCoord::Dec", "//VTK::Light::Impl"
