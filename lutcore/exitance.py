@@ -121,7 +121,7 @@ def exitance(model: ShadingModel, inputs: ShadingInputs) -> FloatArray:
         If the progress asked to stop.
     """
     model = model.settled(inputs)
-    shares = inputs.visibility if inputs.softened is None else inputs.softened
+    shares = inputs.shares
     if not model.local:
         out = model.shade(bared(inputs))
     elif model.joint:

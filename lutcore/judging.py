@@ -1,5 +1,6 @@
 """How wrong each model will be in a scene: predicted, and found at a sample of its vertices."""
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -187,7 +188,10 @@ class Judge:
             return None
         check, sized = self.check, with_samples(model, self.samples)
         if not model.local:
-            return check(lambda vertices: sized.shade_at(bared(self.inputs), vertices))
+            before = time.perf_counter()
+            shader = sized.shader_at(bared(self.inputs))
+            check.seconds += time.perf_counter() - before
+            return check(shader)
         return check(lambda vertices: exitance(sized, check.inputs_at(vertices)))
 
     @property

@@ -351,7 +351,7 @@ class Scene:
 
 def _shares(inputs: "ShadingInputs") -> FloatArray | None:
     """Return what cast shadows leave of each light, by channel, where there are some."""
-    found = inputs.visibility if inputs.softened is None else inputs.softened
+    found = inputs.shares
     if found is None or not len(found):
         return None
     return np.repeat(found[:, :, None], 3, axis=2) if found.ndim == 2 else found

@@ -1,7 +1,7 @@
 """What a shading model gets and returns, and the models by name."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -87,6 +87,11 @@ class ShadingInputs:
     detail: Detail | None = None
 
     @property
+    def shares(self) -> FloatArray | None:
+        """Share of each light that local models are given; None where nothing casts a shadow."""
+        return self.visibility if self.softened is None else self.softened
+
+    @property
     def table(self) -> PsiTable:
         """The psi table of the material and the profile, baked once."""
         return self.baked(USUAL)
@@ -146,22 +151,22 @@ class ShadingModel(Parameters, ABC):
             Radiant exitance, linear RGB, before the exit Fresnel factor.
         """
 
-    def shade_at(self, inputs: ShadingInputs, vertices: AnyArray) -> FloatArray:
-        """Compute what leaves the surface at some vertices, of a model that is not local.
+    def shader_at(self, inputs: ShadingInputs) -> Callable[[AnyArray], FloatArray]:
+        """Prepare a model that is not local to be asked for some vertices, as often as needed.
 
         Parameters
         ----------
         inputs : ShadingInputs
             Of the whole mesh.
-        vertices : ndarray of int, shape=(m,)
-            Indices.
 
         Returns
         -------
-        ndarray, shape=(m, 3)
-            What `shade` gives there, within its own tolerance. A model may have a shorter way.
+        callable
+            From indices of m vertices to what `shade` gives there, shape (m, 3), within the model's
+            own tolerance. A model may have a shorter way.
         """
-        return self.shade(inputs)[vertices]
+        whole = self.shade(inputs)
+        return lambda vertices: whole[vertices]
 
     def shade_channel(self, inputs: ShadingInputs, channel: int) -> FloatArray:
         """Compute what leaves the surface in one channel, for a surface that each sees otherwise.

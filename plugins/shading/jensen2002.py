@@ -1,5 +1,6 @@
 """The reference on a user's own mesh: light gathered from all of it, far light by clusters."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -43,11 +44,11 @@ class Jensen2002(ShadingModel):
         """Compute what leaves the surface; see `ShadingModel.shade`."""
         return gathered(inputs, self.tolerance)
 
-    def shade_at(self, inputs: ShadingInputs, vertices: AnyArray) -> FloatArray:
-        """Compute it at some vertices; see `ShadingModel.shade_at`."""
-        told = inputs.progress
-        light = hierarchy(inputs, self.tolerance, part(told, 0.0, 0.5))
-        return light.at(inputs.points[vertices], part(told, 0.5, 1.0))
+    def shader_at(self, inputs: ShadingInputs) -> Callable[[AnyArray], FloatArray]:
+        """Build the octree once; see `ShadingModel.shader_at`."""
+        light = hierarchy(inputs, self.tolerance, part(inputs.progress, 0.0, 0.5))
+        told = part(inputs.progress, 0.5, 1.0)
+        return lambda vertices: light.at(inputs.points[vertices], told)
 
     def predicted_error(self, scene: Scene) -> FloatArray:
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
