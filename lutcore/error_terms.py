@@ -16,8 +16,9 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
 
 - first: |G(b) - G(b')|, b' the bending that the model follows;
 - second: X; anisotropy: its part with (k1 - k2)^2, for models that know one curvature;
-- higher: e^2, e = E2/(1 + E2), or that of a ball of the body's volume over its area, where that is
-  more: light that goes through the body;
+- higher: e^(5/4), e = E2/(1 + E2), or that of a ball of the body's volume over its area, where that
+  is more: light that goes through the body. Found on ellipsoids, tori, cylinders and scans alike,
+  over four decades of e^2;
 - third: the size of Y with E' = 1, less what the error bar makes of the gradient; concave: G of the
   concave part of S;
 - corner: what is known with its sign,
@@ -26,12 +27,12 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
 
   where
 
-  D is the share of 2 pi that the angles at the vertex lack. Light that crosses no facet comes out
-  of these angles alone; h_D is 1 there and less where light comes from further. a_0 = N_0.w is that
-  of the bare normal N_0, the facets' mean by area. One scale for all channels smooths what light
-  does not blur: s ~ 1 - h^(1/2), as far as facets are rougher than curvature makes them. Normals by
-  channel smooth somewhat less than light does: s ~ -(1 - h)/h^(1/2), small as E(a) - E(a_0) is
-  there. B is by how much E bends from end to end of a facet's sides e and back,
+  D is the share of 2 pi that the angles at the vertex lack: light that crosses no facet comes out
+  of these angles alone. a_0 = N_0.w is that of the bare normal N_0, the facets' mean by area. One
+  scale for all channels smooths what light does not blur: s ~ 1 - h^(1/2), as far as facets are
+  rougher than curvature makes them. Normals by channel smooth somewhat less than light does:
+  s ~ -(1 - h)/h^(1/2), small as E(a) - E(a_0) is there. B is by how much E bends from end to end of
+  a facet's sides e and back,
 
       B = E(a + d) + E(a - d) - (2 + tr S T S) E(a),  d^2 = w.S T S w,  T = <e e^T>:
 
@@ -43,7 +44,8 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
 - base: what references and tables resolve;
 - bumps: (2 r)^(1/2) h^(1/2) less a share of h, r the mean of 1 - cos between the facets and N_0
   beyond what curvature makes of it: light blurs facets that no normal follows. Half of it where
-  normals are those by channel: they do follow;
+  normals are those by channel: they do follow. Less of it, and of strays, where the light stands
+  high: E bends less there;
 - residue: E2/(1 + E2) alone, for tables that are off in the dark;
 - beside: G(b*) - G(b), b* what curvature may be beside the vertex: from its size where it turns the
   normal within reach, its error bar, and its gradient over <r^2>^(1/2). What is flat or hollow here
@@ -69,35 +71,33 @@ from lutcore.lights import light_at
 
 # Half width of the terminator, in N.w.
 _EDGE = 0.1
-DOUBT = 3.99
+DOUBT = 5.7
 """By how much the error bar of curvature counts in b*."""
 
 # By how much its size and its gradient do.
-_SIZE, _CHANGE = 2.32, 1.07
+_SIZE, _CHANGE = 2.0, 1.0
 # The error bar over the facets' width, times this, is how much of the gradient may be noise.
 _NOISE_OF_SLOPE = 3.0
 # Of e for the whole body.
-_THROUGH = 0.6
-# h_D = 1 - _FARTHER h.
-_FARTHER = 0.416
+_THROUGH = 0.57
 # Share of 1 - h^(1/2), and of (1 - h)/h^(1/2), that s is.
-_ONE_SCALE, _BY_CHANNEL = 1.31, 0.523
+_ONE_SCALE, _BY_CHANNEL = 1.45, 0.5
 _LEAST_CROSSED = 1e-3
 # Mean of 1 - cos that curvature makes of facets, over tr S T S, and twice what roughness beyond it
 # has to be, for normals of one scale to have smoothed something.
-_EXPLAINED, _SMOOTHED = 0.31, 0.107
+_EXPLAINED, _SMOOTHED = 0.31, 0.03
 BENT, CUT = 0.125, 0.018
 """Share of B that is off, and the B beyond which gathered light is cut."""
 # How steep E is, is read off over this much at least of N.w.
 _SECANT = 0.02
 # Share of (<r^2> A)^(1/2) that counts as <r^2> in Y, and by how much Y lessens itself.
 _CHORD, _LASTS = 0.45, 35.0
-# How bumps fade where light crosses facets, and into the dark: with L angles, and with b*.
-_BLURRED, _TURNED, _WIDER = 0.655, 0.482, 2.03
+# How bumps fade where light crosses facets, and into the dark with b*.
+_BLURRED, _WIDER = 0.72, 2.0
 # Share of them where normals follow what light sees.
 _FOLLOWED = 0.5
 # By how much what strays is turned to the light.
-_STRAYED = 3.2
+_STRAYED = 7.0
 # Cosines of the light among which the worst is sought where no light is known: the error is
 # largest near the terminator, where F_t bends most, or straight above.
 _WORST = np.array([-0.5, -0.2, -0.05, 0.0, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0])
@@ -214,8 +214,8 @@ def _still(
     `at` is k1, k2, error, facet, grain, corner, the size of the slope and T, `spread` that of the
     channel. Returned are l_u k1, l_u k2, what b*^2 has beyond b^2, what counts times E + G, what
     counts everywhere, <r^2>/4 in mm^2, what the mesh makes of it, what of the gradient may be
-    noise, D h_D, s, the error of bumps, by how much they turn what is dark to the light, both of
-    what strays, S T S, the share of B and that of what is unsure.
+    noise, D, s, the error of bumps, that of what strays and by how much it turns what is dark to
+    the light, S T S, the share of B and that of what is unsure.
     """
     length, _, per_width, square = spread
     k1, k2 = length * at[0], length * at[1]
@@ -232,7 +232,7 @@ def _still(
     share = parts[1] * e2 + parts[2] * uneven + parts[7]
     through = _THROUGH * square * (length / radius) ** 2
     through = max(e2, through / (1.0 + through))
-    everywhere = parts[3] * through * through + parts[9] * e2
+    everywhere = parts[3] * through * np.sqrt(np.sqrt(through)) + parts[9] * e2
     h = reach / (reach + facet)
     root, rest = np.sqrt(h), 1.0 - h
     bent, bent_beside = at[7] * at[0] * at[0], at[9] * at[1] * at[1]
@@ -253,10 +253,9 @@ def _still(
         0.25 * reach,
         0.25 * (reach + _CHORD * np.sqrt(reach * facet) * rest),
         _NOISE_OF_SLOPE * noise / np.sqrt(facet + 1e-300),
-        at[5] * (1.0 - _FARTHER * h),
+        at[5],
         s,
         parts[8] * angle * root * (1.0 - _BLURRED * h) * (_FOLLOWED if by_channel else 1.0),
-        _TURNED * per_width * angle,
         parts[11] * strays,
         _STRAYED * per_width * strays,
         bent,
@@ -288,7 +287,7 @@ def _error(
     a, bare, u, v, steep = way
     _, psi_0, per_width, _ = spread
     k1, k2, beyond, share, everywhere, reach, on_mesh, noise = still[:8]
-    corner, s, bumps, turned, strays, strayed, bent, across, bent_beside, off_by, doubt = still[8:]
+    corner, s, bumps, strays, strayed, bent, across, bent_beside, off_by, doubt = still[8:]
     p, q = max(k1, 0.0), max(k2, 0.0)
     convex = (p * u) ** 2 + (q * v) ** 2
     concave = ((k1 - p) * u) ** 2 + ((k2 - q) * v) ** 2
@@ -331,9 +330,9 @@ def _error(
     lacking, bent_by = corner * lit, off_by * bends
     unsure = abs(lacking) + abs(sloped) + abs(bent_by) + abs(rises)
     error += parts[6] * abs(lacking + sloped + bent_by - rises) + doubt * unsure
-    error += bumps * _fall(a, _WIDER * beside + turned, per_width)
+    blurred = bumps * _fall(a, _WIDER * beside, per_width)
+    error += (blurred + strays * _fall(a, beside + strayed, per_width)) / (1.0 + max(a, 0.0))
     error += parts[10] * (_glow(a, beside, psi_0, per_width, w, corners) - glow)
-    error += strays * _fall(a, beside + strayed, per_width)
     return min(max(error, parts[13]), 1.0)
 
 

@@ -153,7 +153,8 @@ def _collect(
         if twice == 0.0:
             continue
         for axis in range(3):
-            _add(flux, axis, points[i, axis] * nx, points[i, axis] * ny, points[i, axis] * nz)
+            middle = (points[i, axis] + points[j, axis] + points[k, axis]) / 3.0
+            _add(flux, axis, middle * nx, middle * ny, middle * nz)
         _add(flux, 3, nx, ny, nz)
         along, across = values[j] - values[i], values[k] - values[i]
         s, t = (along * vv - across * uv) / twice, (across * uu - along * uv) / twice

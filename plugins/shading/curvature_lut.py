@@ -79,7 +79,7 @@ class CurvatureLut(ShadingModel):
         """Predict how wrong it is; see `ShadingModel.predicted_error`."""
         fits = zip(*hinges_of(scene.table.eta, self.hinges), strict=True)
         flat = np.stack([np.maximum(0.0, COSINES[:, None] - c) @ w for c, w in fits])
-        return scene.error_of(Knowledge(flat, second=float(self.area == "flat")))
+        return scene.error_of(Knowledge(flat, second=float(self.area == "flat"), higher=0.85))
 
     @classmethod
     def rungs(cls) -> tuple[ShadingModel, ...]:
