@@ -62,6 +62,11 @@ class Run:
         WriteError
             If it cannot be written there.
         """
+        if self.output.suffix.lower() == ".pdf" and ".html" in suffixes:
+            raise ParameterError(
+                f"{self.output}: PDF is not written; write -o {self.output.with_suffix('.html')} "
+                "and print that from a browser, it is laid out for A4"
+            )
         if self.output.suffix.lower() not in suffixes:
             name = self.output.suffix or self.output.name
             raise ParameterError.unknown("output format", name, suffixes)

@@ -172,6 +172,47 @@ def test_lut_bakes_the_profile_that_is_named(tmp_path, capsys):
     assert burley["psi0"][0] < dipole["psi0"][0]
 
 
+@pytest.mark.parametrize(
+    ("flags", "scale"),
+    [
+        (["sample:bunny", "--scale", "2mm"], 0.02),
+        (["sample:torus", "--scale", "2mm", "--mm-per-unit", "4"], 0.5),
+        (["any.ply", "--scale", "2mm", "--mm-per-unit", "1000"], 0.002),
+        (["any.ply", "--scale", "2", "--mm-per-unit", "1000"], 2.0),
+    ],
+)
+def test_a_scale_in_mm_is_turned_into_mesh_units(flags, scale, capsys):
+    assert main(["curvature", *flags, "--print-config"]) == 0
+    assert json.loads(capsys.readouterr().out)["scale"] == pytest.approx(scale)
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["any.ply", "--scale", "2mm"], "say how many of them a mesh unit has: --mm-per-unit N"),
+        (["any.ply", "--scale", "2mm", "--mm-per-unit", "0"], "mm_per_unit = 0.0"),
+        (["any.ply", "--scale", "mm"], "scale = 'mm' is neither auto nor a length"),
+        (["any.ply", "--scale", "0"], "scale = 0.0: expected a number > 0"),
+    ],
+)
+def test_a_scale_that_is_no_length_is_refused(flags, message, capsys):
+    assert main(["curvature", *flags, "-o", "x.png"]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_the_table_says_how_long_a_mesh_unit_is_where_it_is_not_a_mm(tmp_path, capsys):
+    words = ["curvature", "sample:torus", "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    assert "in 1/mesh unit, convex positive" in capsys.readouterr().out
+    assert main([*words, "--mm-per-unit", "4"]) == 0
+    assert "in 1/mesh unit (1 mesh unit is 4 mm), convex positive" in capsys.readouterr().out
+
+
+def test_a_report_as_pdf_is_refused_with_the_way_to_it(capsys):
+    assert main(["curvature", "sample:torus", "-o", "x.pdf"]) == 2
+    assert "write -o x.html and print that from a browser" in capsys.readouterr().err
+
+
 def test_scale_auto_undoes_a_session_files_scale(tmp_path):
     saved = tmp_path / "s.json"
     flags = ["sample:torus", "-o", str(tmp_path / "a.npz"), "--save-session", str(saved), *FAST]
