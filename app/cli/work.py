@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from app.failing import Failing
     from app.picture import Picture
     from app.session import Settled
+    from lutcore.health import MeshHealth
 
 
 class Run:
@@ -99,6 +100,11 @@ class Run:
             return []  # nobody would read them, and a million faces take most of a second
         size = self.pipeline.mm_per_unit(self.session)
         warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
+        done = {repair.kind for repair in self.session.repairs}
+        wanted = [kind for kind in _wanted(subject.loaded.health) if kind not in done]
+        if wanted:
+            flags = " ".join(f"--repair {kind}" for kind in wanted)
+            warnings.append(f"it can be repaired first: {flags}")
         if self.session.mm_per_unit is None and subject.mm_per_unit is None:
             warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
         shaded = [one for one in alone(self.session) if one.view != "curvature"]
@@ -247,3 +253,12 @@ class Run:
         result |= {"reference": self.reference.as_json()}
         answer(self.arguments, result, f"{text}\n{self.reference.sentence}")
         return self.reference.exit_code
+
+
+def _wanted(health: "MeshHealth") -> list[str]:
+    """Return the repairs, in order, of what makes curvature wrong rather than less certain."""
+    defects = {
+        "manifold": health.nonmanifold_edges,
+        "orient": health.flipped_edges or health.inside_out_islands,
+    }
+    return [kind for kind, count in defects.items() if count]

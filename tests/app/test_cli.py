@@ -200,6 +200,32 @@ def test_a_scale_that_is_no_length_is_refused(flags, message, capsys):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("faces", "hint"),
+    [
+        ([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], None),
+        ([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], "--repair orient"),
+        ([[0, 1, 2], [0, 1, 3], [0, 3, 2], [1, 2, 3]], "--repair orient"),
+        ([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [1, 0, 4]], "--repair manifold"),
+    ],
+)
+def test_what_makes_curvature_wrong_comes_with_its_repair(faces, hint, tmp_path, capsys):
+    points = [[0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30], [-30, -30, 0]]
+    lines = [f"v {x} {y} {z}" for x, y, z in points[: np.max(faces) + 1]]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    path = tmp_path / "a.obj"
+    path.write_text("\n".join(lines))
+    words = ["curvature", str(path), "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    said = capsys.readouterr().err
+    if hint is None:
+        assert "--repair" not in said
+        return
+    assert f"it can be repaired first: {hint}" in said
+    assert main([*words, *hint.split()]) == 0
+    assert "--repair" not in capsys.readouterr().err
+
+
 def test_the_table_says_how_long_a_mesh_unit_is_where_it_is_not_a_mm(tmp_path, capsys):
     words = ["curvature", "sample:torus", "-o", str(tmp_path / "a.csv"), *FAST]
     assert main(words) == 0
