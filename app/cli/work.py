@@ -258,6 +258,8 @@ class Run:
 def _wanted(health: "MeshHealth") -> list[str]:
     """Return the repairs, in order, of what makes curvature wrong rather than less certain."""
     defects = {
+        # Less than two faces hang together: a soup whose corners do not quite meet.
+        "merge": health.islands > 1 and 2 * health.islands > health.faces,
         "manifold": health.nonmanifold_edges,
         "orient": health.flipped_edges or health.inside_out_islands,
     }

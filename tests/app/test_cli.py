@@ -226,6 +226,20 @@ def test_what_makes_curvature_wrong_comes_with_its_repair(faces, hint, tmp_path,
     assert "--repair" not in capsys.readouterr().err
 
 
+def test_corners_that_do_not_quite_meet_are_to_be_merged(tmp_path, capsys):
+    path = tmp_path / "a.obj"
+    corners = [(0, 0), (30, 0), (0, 30), (30.001, 0), (30, 30), (0, 30.001)]
+    lines = [f"v {x} {y} 0" for x, y in corners]
+    path.write_text("\n".join([*lines, "f 1 2 3", "f 4 5 6"]))
+    words = ["curvature", str(path), "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    assert "it can be repaired first: --repair merge" in capsys.readouterr().err
+    assert main([*words, "--repair", "merge"]) == 0
+    said = capsys.readouterr().err
+    assert "separate parts" not in said
+    assert "repaired first" not in said
+
+
 def test_the_table_says_how_long_a_mesh_unit_is_where_it_is_not_a_mm(tmp_path, capsys):
     words = ["curvature", "sample:torus", "-o", str(tmp_path / "a.csv"), *FAST]
     assert main(words) == 0
