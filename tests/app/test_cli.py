@@ -240,6 +240,22 @@ def test_corners_that_do_not_quite_meet_are_to_be_merged(tmp_path, capsys):
     assert "repaired first" not in said
 
 
+def test_a_foreign_estimator_that_fails_is_one_line_with_file_and_remedy(tmp_path, capsys):
+    path = tmp_path / "fin.off"  # a tetrahedron with a third face at an edge
+    path.write_text(
+        "OFF\n5 5 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n-9 -9 0\n"
+        "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 1 0 4\n"
+    )
+    result = tmp_path / "a.csv"
+    words = ["curvature", str(path), "-o", str(result), "--method", "meshlab-quadric"]
+    assert main([*words, "--quiet"]) == 1
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith(f"curvelight: {path}: meshlab-quadric: pymeshlab failed on it (")
+    assert "2-manifold" in said
+    assert said.endswith("; choose another estimator, or repair the mesh")
+    assert not result.exists()
+
+
 def test_the_table_says_how_long_a_mesh_unit_is_where_it_is_not_a_mm(tmp_path, capsys):
     words = ["curvature", "sample:torus", "-o", str(tmp_path / "a.csv"), *FAST]
     assert main(words) == 0
