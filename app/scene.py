@@ -40,6 +40,9 @@ _NEAREST = 0.02
 _LETTER = 0.56
 # As wide as a bar with the numbers beside it.
 _LABELS = "bar -0.00123"
+# Numbers beside a colour bar, and the digits that they have.
+_NUMBERS = 6
+_FEWEST_DIGITS, _MOST_DIGITS = 3, 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,8 +292,9 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, floa
     bar = vtkScalarBarActor()
     bar.SetLookupTable(_lookup(scale))
     bar.SetMaximumNumberOfColors(256)
-    bar.SetNumberOfLabels(6)
-    bar.SetLabelFormat("{:.3g}" if _new_label_format() else "%.3g")
+    bar.SetNumberOfLabels(_NUMBERS)
+    digits = label_digits(scale.low, scale.high)
+    bar.SetLabelFormat(f"{{:.{digits}g}}" if _new_label_format() else f"%.{digits}g")
     bar.UnconstrainedFontSizeOn()
     for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
         _style(style, renderer, size)
@@ -307,6 +311,26 @@ def fill_bar(renderer: vtkRenderer, scale: ColorScale, pixels: tuple[float, floa
     title.SetPosition(0.5, 0.87)
     title.GetTextProperty().SetJustificationToCentered()
     renderer.AddViewProp(title)
+
+
+def label_digits(low: float, high: float) -> int:
+    """Return how many digits tell the numbers beside a colour bar apart.
+
+    Parameters
+    ----------
+    low, high : float
+        Its ends.
+
+    Returns
+    -------
+    int
+        Three, or as many more as it takes.
+    """
+    numbers = np.linspace(low, high, _NUMBERS)
+    for digits in range(_FEWEST_DIGITS, _MOST_DIGITS):
+        if len({f"{number:.{digits}g}" for number in numbers}) == _NUMBERS:
+            return digits
+    return _MOST_DIGITS
 
 
 def _new_label_format() -> bool:

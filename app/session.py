@@ -6,6 +6,7 @@ same mesh gives the same picture, from the window and from the command line.
 
 import math
 import os
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -22,6 +23,10 @@ NotNegative = Annotated[float, Meta(ge=0.0)]
 Percent = Annotated[float, Meta(ge=0.0, le=100.0)]
 _INDEX = (1.0, 3.0)
 Pixels = Annotated[int, Meta(ge=16, le=16384)]
+_OUT_OF_BOUNDS = re.compile(
+    r"Expected `(?P<kind>int|float)` (?P<sign>[<>]=?) (?P<bound>[-+.\de]+)"
+    r" - at `\$\.(?P<name>\w+)(\[\d+\])?`"
+)
 Frame = Literal["camera", "world"]
 RepairKind = Literal["merge", "islands", "manifold", "holes", "orient", "decimate"]
 
@@ -439,4 +444,14 @@ def checked(session: Session, **changes: Any) -> Session:
             msgspec.to_builtins(msgspec.structs.replace(session, **changes)), Session
         )
     except (msgspec.MsgspecError, ValueError) as error:
-        raise ParameterError(str(error)) from None
+        raise ParameterError(_in_words(str(error), changes)) from None
+
+
+def _in_words(problem: str, changes: dict[str, Any]) -> str:
+    """Return what msgspec says of a number out of bounds as a person would, with the value."""
+    found = _OUT_OF_BOUNDS.fullmatch(problem)
+    if found is None or found["name"] not in changes:
+        return problem
+    kind = "a whole number" if found["kind"] == "int" else "a number"
+    least = f"{float(found['bound']):g}"
+    return f"{found['name']} = {changes[found['name']]}: expected {kind} {found['sign']} {least}"

@@ -134,7 +134,8 @@ def _answer(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     except Exception as error:  # whatever it is, it must reach the caller as words
         if short(str(error)):
             return {SHORTAGE: np.array(True)}
-        return {PROBLEM: np.array(f"failed on it ({type(error).__name__}: {error})")}
+        words = " ".join(str(error).split())  # a message is one line
+        return {PROBLEM: np.array(f"failed on it ({type(error).__name__}: {words})")}
 
 
 def _limit(memory: int) -> None:

@@ -100,7 +100,8 @@ def head(drawn: "Figure", chart: Chart, inks: Inks) -> float:
         (f"{chart.subject}; {made}", 140, 10.5, "normal"),
         (" ".join(chart.meaning), 175, 8.5, "normal"),
     ):
-        lines = textwrap.wrap(words, columns)
+        # A number and its per cent sign stay in one line.
+        lines = textwrap.wrap(words.replace(" %", "\N{NO-BREAK SPACE}%"), columns)
         drawn.text(
             0.03,
             top,

@@ -89,7 +89,7 @@ def votes(seen: Sequence[Seen]) -> dict[str, Seen]:
     """
     found: dict[str, Seen] = {}
     for one in seen:
-        if not one.change < STEADY * size(one.values):
+        if not one.change <= STEADY * size(one.values):
             continue
         if one.name not in found or one.scale < found[one.name].scale:
             found[one.name] = one
@@ -112,7 +112,8 @@ def biases(seen: Sequence[Seen]) -> tuple[list[float], float] | None:
     size : float
         Median curvedness of the median of all votes, 1/mesh unit.
     None
-        If no setting of any estimator is steady, as on a flat mesh: nothing stands for the truth.
+        If no setting of any estimator is steady, or most of those that are see no curvature:
+        nothing stands for the truth.
     """
     voting = votes(seen)
     if not voting:

@@ -16,6 +16,17 @@ from lutcore.mesh import TriangleMesh
 from lutcore.progress import Progress
 
 _STEADY = f"{100.0 * STEADY:g} %"
+# Where there is nothing to compare with: the error's meaning, and the advice.
+_UNSTEADY = (
+    f"No error: under this noise every estimate changes by more than {_STEADY}.",
+    f"No recommendation: no estimate stays within {_STEADY} under this noise, so nothing can "
+    "stand for the truth; lower --noise or add larger --scales.",
+)
+_FLAT = (
+    "No error: the estimates that this noise hardly moves see no curvature.",
+    "No recommendation: the estimates that this noise hardly moves see no curvature to compare; "
+    "choose a mesh that is curved, or without MESH a known surface.",
+)
 
 
 def mesh_chart(
@@ -87,23 +98,21 @@ def mesh_chart(
         for one, change in zip(finished, changes, strict=True)
     ]
     found = biases(seen)
+    steady = votes(seen)
     facts = {"mesh": label, "vertices": len(mesh.vertices), "error": "change and bias"}
     subject = (
         f"{label}, {len(mesh.vertices):,} vertices, moved by {100 * measuring.noise:g} % of "
         "their edges"
     )
     if found is None:
+        error, advice = _FLAT if steady else _UNSTEADY
         return run.chart(
             subject=subject,
-            error=f"No error: under this noise every estimate changes by more than {_STEADY}.",
+            error=error,
             points=[],
             tolerance=tolerance,
             facts=facts,
-            advice=Advice(
-                None,
-                f"No recommendation: no estimate stays within {_STEADY} under this noise, so "
-                "nothing can stand for the truth; lower --noise or add larger --scales.",
-            ),
+            advice=Advice(None, advice),
         )
     distances, size = found
     points = [
@@ -125,6 +134,5 @@ def mesh_chart(
         ),
         points=points,
         tolerance=tolerance,
-        facts=facts
-        | {"reference": {name: vote.scale / spacing for name, vote in votes(seen).items()}},
+        facts=facts | {"reference": {name: vote.scale / spacing for name, vote in steady.items()}},
     )

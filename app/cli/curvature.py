@@ -112,7 +112,9 @@ def _measure(work: Run) -> int:
             mesh = work.pipeline.subject(work.session).mesh
             export.save(work.output, mesh, export.curvature_arrays(curvatures, found.spread))
     result = work.summary(warnings) | found.as_json()
-    return work.finish(result, _text(found, str(work.output)))
+    return work.finish(
+        result, _text(found, str(work.output), work.pipeline.mm_per_unit(work.session))
+    )
 
 
 def _fixed(arguments: argparse.Namespace) -> dict[str, object]:
@@ -131,7 +133,7 @@ def _fixed(arguments: argparse.Namespace) -> dict[str, object]:
     return fixed
 
 
-def _text(found: Findings, output: str) -> str:
+def _text(found: Findings, output: str, mm_per_unit: float) -> str:
     judged = found.judged
     lines = []
     for group, statistics in found.statistics.items():
@@ -146,9 +148,11 @@ def _text(found: Findings, output: str) -> str:
         ((name, counted),) = found.histograms.items()
         lines += [*_bars(name, counted), ""]
     scale = f"at scale {found.scale:.4g} mesh units (median)" if found.scale else "on the one-ring"
+    # The histogram is in mm, as the picture is.
+    size = "" if mm_per_unit == 1.0 else f" (1 mesh unit is {mm_per_unit:g} mm)"
     lines += [
-        f"in 1/mesh unit, convex positive; {found.method} {scale}; {found.not_estimated} vertices "
-        "without an estimate",
+        f"in 1/mesh unit{size}, convex positive; {found.method} {scale}; "
+        f"{found.not_estimated} vertices without an estimate",
         f"|k| is below its error at {judged.below_error:.1%} of the vertices; Gauss-Bonnet "
         f"residual {judged.gauss_bonnet_residual:.2%}",
     ]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from app.failing import Failing
     from app.picture import Picture
     from app.session import Settled
+    from lutcore.health import MeshHealth
 
 
 class Run:
@@ -62,6 +63,11 @@ class Run:
         WriteError
             If it cannot be written there.
         """
+        if self.output.suffix.lower() == ".pdf" and ".html" in suffixes:
+            raise ParameterError(
+                f"{self.output}: PDF is not written; write -o {self.output.with_suffix('.html')} "
+                "and print that from a browser, it is laid out for A4"
+            )
         if self.output.suffix.lower() not in suffixes:
             name = self.output.suffix or self.output.name
             raise ParameterError.unknown("output format", name, suffixes)
@@ -94,6 +100,11 @@ class Run:
             return []  # nobody would read them, and a million faces take most of a second
         size = self.pipeline.mm_per_unit(self.session)
         warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
+        done = {repair.kind for repair in self.session.repairs}
+        wanted = [kind for kind in _wanted(subject.loaded.health) if kind not in done]
+        if wanted:
+            flags = " ".join(f"--repair {kind}" for kind in wanted)
+            warnings.append(f"it can be repaired first: {flags}")
         if self.session.mm_per_unit is None and subject.mm_per_unit is None:
             warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
         shaded = [one for one in alone(self.session) if one.view != "curvature"]
@@ -242,3 +253,14 @@ class Run:
         result |= {"reference": self.reference.as_json()}
         answer(self.arguments, result, f"{text}\n{self.reference.sentence}")
         return self.reference.exit_code
+
+
+def _wanted(health: "MeshHealth") -> list[str]:
+    """Return the repairs, in order, of what makes curvature wrong rather than less certain."""
+    defects = {
+        # Less than two faces hang together: a soup whose corners do not quite meet.
+        "merge": health.islands > 1 and 2 * health.islands > health.faces,
+        "manifold": health.nonmanifold_edges,
+        "orient": health.flipped_edges or health.inside_out_islands,
+    }
+    return [kind for kind, count in defects.items() if count]

@@ -11,6 +11,7 @@ from app.steps.kept import key_of
 from lutcore.arrays import FloatArray
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.errors import MeshError
+from lutcore.isolated import IsolatedError
 from lutcore.progress import Progress
 
 if TYPE_CHECKING:
@@ -38,11 +39,19 @@ class Measurements(Details):
         ------
         MeshError
             If no face has an area.
+        IsolatedError
+            If another package's estimator fails on it.
         """
-        found = self.once(
-            ("curvatures", *self.curvature_key(session)),
-            lambda: self._estimate(session, self.progress),
-        )
+        try:
+            found = self.once(
+                ("curvatures", *self.curvature_key(session)),
+                lambda: self._estimate(session, self.progress),
+            )
+        except IsolatedError as error:
+            raise IsolatedError(
+                f"{session.mesh}: {session.estimator.name}: {error}; choose another estimator, "
+                "or repair the mesh"
+            ) from error
         if not found.estimated.any():
             raise self._no_surface(session)
         return found

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.chart.captions import Inks
+from app.chart.captions import Inks, head
 from app.chart.data import as_csv, gathered, plain, rows
 from app.chart.drawing import figure
 from app.chart.labels import overlap, place
@@ -135,3 +135,15 @@ def test_pictures_are_the_same_each_time(suffix):
 def test_a_picture_shows_formulas_in_names_as_they_are():
     drawn = content(chart(LADDER, subject="scan_$1^2$.ply"), ".svg").decode()
     assert "scan_$1^2$.ply" in drawn
+
+
+@pytest.mark.parametrize("padding", range(8))
+def test_a_per_cent_sign_stays_beside_its_number(padding):
+    from matplotlib.figure import Figure
+
+    drawn = Figure(figsize=(15.0, 9.0))
+    words = "y" * padding + " 12.5 %" * 30  # breaks in every place there is
+    head(drawn, chart(LADDER, subject=words), Inks())
+    lines = [line for text in drawn.texts for line in text.get_text().splitlines()]
+    assert sum("12.5\N{NO-BREAK SPACE}%" in line for line in lines) > 1
+    assert not any(line.startswith("%") for line in lines)

@@ -71,6 +71,20 @@ def test_without_a_steady_setting_nothing_stands_for_the_truth():
     assert biases([seen("a", 2.0, 1.0, 0.2)]) is None
 
 
+def test_who_steadily_sees_no_curvature_votes():
+    flat = [seen(name, 0.0, 0.0, 0.0) for name in "abc"]
+    assert set(votes([*flat, seen("d", 0.0, 7.0, 0.0)])) == set("abcd")
+    assert biases([*flat, seen("d", 0.0, 7.0, 0.0)]) is None
+
+
+def test_on_a_flat_mesh_nothing_is_recommended():
+    triangle = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    methods = ["auto", "ball-jet", "rusinkiewicz2004"]
+    found = mesh_chart(triangle, "flat", methods, (), Measuring(repeats=1), None, silent)
+    assert found.points == ()
+    assert "see no curvature" in found.advice.sentence
+
+
 def test_the_error_on_a_mesh_follows_the_truth_and_oversmoothing_does_not_win():
     # A torus of 30 spacings around its tube, where 8 spacings smooth most away; 2 % of noise.
     exact = analytic.torus(2500, irregular=True)

@@ -172,6 +172,103 @@ def test_lut_bakes_the_profile_that_is_named(tmp_path, capsys):
     assert burley["psi0"][0] < dipole["psi0"][0]
 
 
+@pytest.mark.parametrize(
+    ("flags", "scale"),
+    [
+        (["sample:bunny", "--scale", "2mm"], 0.02),
+        (["sample:torus", "--scale", "2mm", "--mm-per-unit", "4"], 0.5),
+        (["any.ply", "--scale", "2mm", "--mm-per-unit", "1000"], 0.002),
+        (["any.ply", "--scale", "2", "--mm-per-unit", "1000"], 2.0),
+    ],
+)
+def test_a_scale_in_mm_is_turned_into_mesh_units(flags, scale, capsys):
+    assert main(["curvature", *flags, "--print-config"]) == 0
+    assert json.loads(capsys.readouterr().out)["scale"] == pytest.approx(scale)
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["any.ply", "--scale", "2mm"], "say how many of them a mesh unit has: --mm-per-unit N"),
+        (["any.ply", "--scale", "2mm", "--mm-per-unit", "0"], "mm_per_unit = 0.0"),
+        (["any.ply", "--scale", "mm"], "scale = 'mm' is neither auto nor a length"),
+        (["any.ply", "--scale", "0"], "scale = 0.0: expected a number > 0"),
+    ],
+)
+def test_a_scale_that_is_no_length_is_refused(flags, message, capsys):
+    assert main(["curvature", *flags, "-o", "x.png"]) == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("faces", "hint"),
+    [
+        ([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], None),
+        ([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], "--repair orient"),
+        ([[0, 1, 2], [0, 1, 3], [0, 3, 2], [1, 2, 3]], "--repair orient"),
+        ([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [1, 0, 4]], "--repair manifold"),
+    ],
+)
+def test_what_makes_curvature_wrong_comes_with_its_repair(faces, hint, tmp_path, capsys):
+    points = [[0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30], [-30, -30, 0]]
+    lines = [f"v {x} {y} {z}" for x, y, z in points[: np.max(faces) + 1]]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    path = tmp_path / "a.obj"
+    path.write_text("\n".join(lines))
+    words = ["curvature", str(path), "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    said = capsys.readouterr().err
+    if hint is None:
+        assert "--repair" not in said
+        return
+    assert f"it can be repaired first: {hint}" in said
+    assert main([*words, *hint.split()]) == 0
+    assert "--repair" not in capsys.readouterr().err
+
+
+def test_corners_that_do_not_quite_meet_are_to_be_merged(tmp_path, capsys):
+    path = tmp_path / "a.obj"
+    corners = [(0, 0), (30, 0), (0, 30), (30.001, 0), (30, 30), (0, 30.001)]
+    lines = [f"v {x} {y} 0" for x, y in corners]
+    path.write_text("\n".join([*lines, "f 1 2 3", "f 4 5 6"]))
+    words = ["curvature", str(path), "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    assert "it can be repaired first: --repair merge" in capsys.readouterr().err
+    assert main([*words, "--repair", "merge"]) == 0
+    said = capsys.readouterr().err
+    assert "separate parts" not in said
+    assert "repaired first" not in said
+
+
+def test_a_foreign_estimator_that_fails_is_one_line_with_file_and_remedy(tmp_path, capsys):
+    path = tmp_path / "fin.off"  # a tetrahedron with a third face at an edge
+    path.write_text(
+        "OFF\n5 5 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n-9 -9 0\n"
+        "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 1 0 4\n"
+    )
+    result = tmp_path / "a.csv"
+    words = ["curvature", str(path), "-o", str(result), "--method", "meshlab-quadric"]
+    assert main([*words, "--quiet"]) == 1
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith(f"curvelight: {path}: meshlab-quadric: pymeshlab failed on it (")
+    assert "2-manifold" in said
+    assert said.endswith("; choose another estimator, or repair the mesh")
+    assert not result.exists()
+
+
+def test_the_table_says_how_long_a_mesh_unit_is_where_it_is_not_a_mm(tmp_path, capsys):
+    words = ["curvature", "sample:torus", "-o", str(tmp_path / "a.csv"), *FAST]
+    assert main(words) == 0
+    assert "in 1/mesh unit, convex positive" in capsys.readouterr().out
+    assert main([*words, "--mm-per-unit", "4"]) == 0
+    assert "in 1/mesh unit (1 mesh unit is 4 mm), convex positive" in capsys.readouterr().out
+
+
+def test_a_report_as_pdf_is_refused_with_the_way_to_it(capsys):
+    assert main(["curvature", "sample:torus", "-o", "x.pdf"]) == 2
+    assert "write -o x.html and print that from a browser" in capsys.readouterr().err
+
+
 def test_scale_auto_undoes_a_session_files_scale(tmp_path):
     saved = tmp_path / "s.json"
     flags = ["sample:torus", "-o", str(tmp_path / "a.npz"), "--save-session", str(saved), *FAST]

@@ -4,7 +4,7 @@ import pytest
 from app import gl
 from app.colormaps import table
 from app.render import Panel, draw
-from app.scene import ColorScale, Surface
+from app.scene import ColorScale, Surface, label_digits
 from app.session import Camera
 from lutcore.errors import ParameterError
 from lutcore.mesh import TriangleMesh
@@ -109,3 +109,11 @@ def test_a_background_that_is_no_colour_is_refused():
 def test_a_colormap_that_does_not_exist_is_refused_with_the_nearest():
     with pytest.raises(ParameterError, match="did you mean 'viridis'"):
         table("viridi")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "digits"),
+    [(0.0, 1.0, 3), (-0.05, 0.12, 3), (2.0, 2.02, 4), (0.285, 0.288, 4), (5.0, 5.00001, 7)],
+)
+def test_numbers_beside_a_colour_bar_differ(low, high, digits):
+    assert label_digits(low, high) == digits

@@ -40,6 +40,20 @@ FULL = Session(
 )
 
 
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"scale": 0.0}, "scale = 0.0: expected a number > 0"),
+        ({"size": (5, 500)}, "size = (5, 500): expected a whole number >= 16"),
+        ({"percentiles": (5.0, 101.0)}, "percentiles = (5.0, 101.0): expected a number <= 100"),
+    ],
+)
+def test_a_number_out_of_bounds_is_said_in_words(changes, message):
+    with pytest.raises(ParameterError) as caught:
+        replaced(FULL, **changes)
+    assert str(caught.value) == message
+
+
 @pytest.mark.parametrize("session", [Session(), FULL])
 def test_a_session_comes_back_from_json_as_it_was(session):
     assert from_json(to_json(session)) == session

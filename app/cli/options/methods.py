@@ -22,7 +22,9 @@ def add_curvature(parser: argparse.ArgumentParser, words: list[str]) -> None:
     group = parser.add_argument_group("curvature")
     doc = "estimator; see curvelight models"
     add_plugin(parser, group, estimator_registry, words, "--method", "estimator", doc)
-    group.add_argument("--scale", metavar="auto|LENGTH", help="averaging length, mesh units")
+    group.add_argument(
+        "--scale", metavar="auto|LENGTH", help="averaging length: 3 in mesh units, or 3mm"
+    )
     group.add_argument("--mm-per-unit", type=float, metavar="N", help="size of a mesh unit")
 
 

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from app import session as state
 from app.cli.options.plugins import method_from
 from app.cli.options.start import started
+from app.samples import PREFIX, sample
 from app.session import Method, Session, Volume
 from lutcore.errors import ParameterError
 
@@ -102,7 +103,7 @@ def said(arguments: argparse.Namespace, start: Session) -> dict[str, Any]:
         if given.get(field):
             found[field] = tuple(given[field])
     if given.get("scale") is not None:
-        found["scale"] = _scale(given["scale"])
+        found["scale"] = _scale(given["scale"], found, start)
     if given.get("level") is not None or given.get("smoothing") is not None:
         found["volume"] = _volume(start.volume, given)
     for field, (flag, kind) in _METHODS.items():
@@ -124,10 +125,26 @@ def _volume(start: Volume, given: dict[str, Any]) -> Volume:
         ) from None
 
 
-def _scale(text: str) -> float | None:
+def _scale(text: str, found: dict[str, Any], start: Session) -> float | None:
     if text == "auto":
         return None
     try:
-        return float(text)
+        length = float(text.removesuffix("mm"))
     except ValueError:
         raise ParameterError(f"scale = {text!r} is neither auto nor a length") from None
+    return length / _mm_per_unit(text, found, start) if text.endswith("mm") else length
+
+
+def _mm_per_unit(text: str, found: dict[str, Any], start: Session) -> float:
+    """Return the size of a mesh unit; a file is not read for it."""
+    said: float | None = found.get("mm_per_unit", start.mm_per_unit)
+    mesh = found.get("mesh", start.mesh)
+    if said is None and isinstance(mesh, str) and mesh.startswith(PREFIX):
+        said = sample(mesh).mm_per_unit
+    if said is None:
+        raise ParameterError(
+            f"scale = {text!r} is in mm; say how many of them a mesh unit has: --mm-per-unit N"
+        )
+    if not said > 0.0:
+        raise ParameterError(f"mm_per_unit = {said}: expected a number > 0")
+    return said
