@@ -71,7 +71,7 @@ from lutcore.lights import light_at
 
 # Half width of the terminator, in N.w.
 _EDGE = 0.1
-DOUBT = 5.7
+DOUBT = 15.0
 """By how much the error bar of curvature counts in b*."""
 
 # By how much its size and its gradient do.
@@ -79,13 +79,13 @@ _SIZE, _CHANGE = 2.0, 1.0
 # The error bar over the facets' width, times this, is how much of the gradient may be noise.
 _NOISE_OF_SLOPE = 3.0
 # Of e for the whole body.
-_THROUGH = 0.57
+_THROUGH = 0.47
 # Share of 1 - h^(1/2), and of (1 - h)/h^(1/2), that s is.
-_ONE_SCALE, _BY_CHANNEL = 1.45, 0.5
+_ONE_SCALE, _BY_CHANNEL = 1.5, 0.5
 _LEAST_CROSSED = 1e-3
 # Mean of 1 - cos that curvature makes of facets, over tr S T S, and twice what roughness beyond it
 # has to be, for normals of one scale to have smoothed something.
-_EXPLAINED, _SMOOTHED = 0.31, 0.03
+_EXPLAINED, _SMOOTHED = 0.31, 0.037
 BENT, CUT = 0.125, 0.018
 """Share of B that is off, and the B beyond which gathered light is cut."""
 # How steep E is, is read off over this much at least of N.w.
@@ -93,11 +93,11 @@ _SECANT = 0.02
 # Share of (<r^2> A)^(1/2) that counts as <r^2> in Y, and by how much Y lessens itself.
 _CHORD, _LASTS = 0.45, 35.0
 # How bumps fade where light crosses facets, and into the dark with b*.
-_BLURRED, _WIDER = 0.72, 2.0
+_BLURRED, _WIDER = 0.75, 1.6
 # Share of them where normals follow what light sees.
 _FOLLOWED = 0.5
 # By how much what strays is turned to the light.
-_STRAYED = 7.0
+_STRAYED = 8.0
 # Cosines of the light among which the worst is sought where no light is known: the error is
 # largest near the terminator, where F_t bends most, or straight above.
 _WORST = np.array([-0.5, -0.2, -0.05, 0.0, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0])

@@ -113,7 +113,7 @@ def test_parts_can_be_had_alone(mesh, tmp_path, capsys, monkeypatch, what, suffi
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["-o", "a.pdf"], "unknown output format '.pdf'"),
+        (["-o", "a.pdf"], "PDF is not written; write -o a.html"),
         (["-o", "a.csv", "--show", "strip"], "unknown output format '.csv'"),
         (["-o", "a.html", "--show", "range"], "unknown output format '.html'"),
         (["-o", "a.png", "--models", "lambrt"], "did you mean 'lambert'"),
