@@ -23,7 +23,7 @@ tells how far light crosses facets, A the area of the mesh per vertex. The terms
   concave part of S;
 - corner: what is known with its sign,
 
-      |D (E + G) h_D + s (E(a) - E(a_0)) + (1 - h^(1/2))^2 B/8 - Y|,
+      |D (E + G) + s (E(a) - E(a_0)) + (1 - h^(1/2))^2 B/8 - Y|,
 
   where
 

@@ -57,7 +57,10 @@ def add_colors(parser: argparse.ArgumentParser, several: bool = False) -> None:
         help="ends of the colour bar; else percentiles of what the error bars trust",
     )
     group.add_argument(
-        "--symmetric", action="store_const", const=True, help="range as wide below 0 as above"
+        "--symmetric",
+        action="store_const",
+        const=True,
+        help="without --range: as wide below 0 as above",
     )
     group.add_argument("--flip", action="store_const", const=True, help="turn the map round")
     group.add_argument(
