@@ -71,7 +71,8 @@ class Ranges:
         """What the errors are."""
         return (
             "Error is relative L2 over the whole ball. Left, against the profile "
-            f"{self.profile} integrated over the true sphere with the Fresnel factor inside; "
+            f"{self.profile} integrated over the true sphere with the Fresnel factor inside, "
+            f"errors below {100.0 * _LEAST:g} % drawn there; "
             f"right, against {PHOTONS:,} photons followed through it, whose own scatter is the "
             "dotted line: an error below it is not resolved, and drawn on it."
         )

@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING
 
 from app.cli.choose_said import text
 from app.cli.console import answer, note, progress
+from app.cli.options.mesh import add_repairs, add_volume
 from app.cli.options.methods import add_curvature
 from app.cli.options.session import session_from
 from app.cli.options.shading import add_shading
+from app.cli.remarks import remarks
 from lutcore.parameters import Number
 
 if TYPE_CHECKING:
@@ -40,7 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser, words: list[str]) -> None:
     """
     from lutcore.tolerance import DEFAULTS, METRICS
 
-    parser.add_argument("mesh", nargs="?", metavar="MESH", help="mesh file, or sample:NAME")
+    parser.add_argument("mesh", nargs="?", metavar="MESH", help="mesh file, volume, or sample:NAME")
+    add_volume(parser)
+    add_repairs(parser)
     parser.add_argument("--session", type=Path, metavar="FILE", help="start from a session file")
     parser.set_defaults(own_mesh=False)
     group = parser.add_argument_group("how good")
@@ -87,15 +91,11 @@ def run(arguments: argparse.Namespace) -> int:
     value = DEFAULTS[arguments.metric] if given is None else _TOLERANCE.check("tolerance", given)
     session = session_from(arguments, view="shade")
     pipeline = Pipeline(progress(arguments))
-    subject = pipeline.subject(session)
-    size = pipeline.mm_per_unit(session)
-    warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
-    if session.mm_per_unit is None and subject.sample is None:
-        warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
+    warnings = remarks(session, pipeline)
     for warning in warnings:
         note(arguments, f"{session.mesh}: {warning}")
     tolerance = Tolerance(float(value), arguments.metric)
-    camera = camera_of(session.camera, subject, 1.0)
+    camera = camera_of(session.camera, pipeline.subject(session), 1.0)
     checked = not arguments.predicted_only
     found = needs(session, pipeline, axes(camera), tolerance, arguments.again, checked)
     result = _plain(session, pipeline, found) | {

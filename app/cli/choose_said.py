@@ -33,14 +33,14 @@ def text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
     metric = choice.tolerance.metric
     size = pipeline.mm_per_unit(session)
     lines = [
-        f"{pipeline.material(session).name}, {size:g} mm per unit, {len(session.lights)} lights, "
+        f"{pipeline.material(session).name}, {size:g} mm per unit, {_lights(session)}, "
         f"tolerance {choice.tolerance.value:g} ({metric}); errors in R_d and the largest "
         "irradiance, ns per vertex and light",
         "",
         table([_head(metric), *(_row(rung, metric) for rung in choice.rungs)]),
         "",
         f"choice: {choice.sentence}.",
-        f"costs {choice.milliseconds:.3g} ms for this mesh and its lights",
+        f"costs {spent(choice.milliseconds)} for this mesh and its lights",
         _check(choice),
         *_elsewhere(choice),
         f"table: {choice.samples} samples of psi are enough, and are taken",
@@ -48,11 +48,38 @@ def text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
     if found.shadows is not None:
         need = "needed" if found.shadows.needed else "not needed"
         change = f"{100.0 * found.shadows.change:.1f} % of the light (root mean square)"
-        lines.append(f"shadows: {need}; they change {change}{_unshadowed(choice)}")
+        ask = ""
+        if found.shadows.needed and not choice.shadowed:
+            ask = "; the choice is made without them, --shadows on makes it with them"
+        lines.append(f"shadows: {need}; they change {change}{_unshadowed(choice)}{ask}")
     if found.scale is not None:
         finer = f"light carries an edge by {found.glow:.3g}"
         lines.append(f"scale of curvature: {found.scale:.3g} mesh units; {finer}")
     return "\n".join([*lines, *_physics(found)])
+
+
+def _lights(session: "Session") -> str:
+    count = len(session.lights)
+    return "1 light" if count == 1 else f"{count} lights"
+
+
+def spent(milliseconds: float) -> str:
+    """Return a time in the unit that people read it in.
+
+    Parameters
+    ----------
+    milliseconds : float
+        The time.
+
+    Returns
+    -------
+    str
+        Three digits with their unit, or whole seconds.
+    """
+    seconds = milliseconds / 1e3
+    if seconds < 0.9995:
+        return f"{milliseconds:.3g} ms"
+    return f"{seconds:.3g} s" if seconds < 999.5 else f"{seconds:,.0f} s"
 
 
 def _head(metric: str) -> list[str]:
@@ -90,7 +117,7 @@ def _check(choice: "Choice") -> str:
     cast = "with cast shadows on both sides" if choice.shadowed else "without cast shadows"
     return (
         f"checked at {many} vertices{near}, at {100.0 * CONFIDENCE:g} % confidence, {cast}; that "
-        f"took {choice.check_milliseconds:.3g} ms, once and not for each picture"
+        f"took {spent(choice.check_milliseconds)}, once and not for each picture"
     )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from app import session as state
 from app.cli.console import answer, note, progress
+from app.cli.remarks import remarks
 from app.contestants import alone
 from app.pipeline import Pipeline
 from app.session import Camera, Session
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from app.failing import Failing
     from app.picture import Picture
     from app.session import Settled
-    from lutcore.health import MeshHealth
 
 
 class Run:
@@ -95,25 +95,10 @@ class Run:
         list of str
             Warnings, each one line.
         """
-        subject = self.pipeline.subject(self.session)
+        self.pipeline.subject(self.session)
         if self.arguments.quiet and not self.arguments.json:
             return []  # nobody would read them, and a million faces take most of a second
-        size = self.pipeline.mm_per_unit(self.session)
-        warnings = [*subject.warnings, *subject.loaded.health.remarks(size)]
-        done = {repair.kind for repair in self.session.repairs}
-        wanted = [kind for kind in _wanted(subject.loaded.health) if kind not in done]
-        if wanted:
-            flags = " ".join(f"--repair {kind}" for kind in wanted)
-            warnings.append(f"it can be repaired first: {flags}")
-        if self.session.mm_per_unit is None and subject.mm_per_unit is None:
-            warnings.append("1 mesh unit is taken as 1 mm; say --mm-per-unit if it is not")
-        shaded = [one for one in alone(self.session) if one.view != "curvature"]
-        floored = [one for one in shaded if self.pipeline.floored(one)]
-        warnings += [
-            f"{name} absorbs so little that its glow has no end; it is shaded with that of the "
-            "least absorption that has one"
-            for name in dict.fromkeys(self.pipeline.material(one).name for one in floored)
-        ]
+        warnings = remarks(self.session, self.pipeline)
         for warning in warnings:
             note(self.arguments, f"{self.session.mesh}: {warning}")
         return warnings
@@ -253,14 +238,3 @@ class Run:
         result |= {"reference": self.reference.as_json()}
         answer(self.arguments, result, f"{text}\n{self.reference.sentence}")
         return self.reference.exit_code
-
-
-def _wanted(health: "MeshHealth") -> list[str]:
-    """Return the repairs, in order, of what makes curvature wrong rather than less certain."""
-    defects = {
-        # Less than two faces hang together: a soup whose corners do not quite meet.
-        "merge": health.islands > 1 and 2 * health.islands > health.faces,
-        "manifold": health.nonmanifold_edges,
-        "orient": health.flipped_edges or health.inside_out_islands,
-    }
-    return [kind for kind, count in defects.items() if count]

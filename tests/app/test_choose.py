@@ -8,6 +8,7 @@ import pytest
 
 from app import costs as kept
 from app.choosing import needs
+from app.cli import choose_said as said
 from app.cli.main import main
 from app.pipeline import Pipeline
 from app.session import Directional, Method, Session
@@ -116,6 +117,45 @@ def test_shadows_that_the_scene_casts_are_in_the_check(capsys: pytest.CaptureFix
     assert "too much" in text
     assert main([*asked, "--shadows", "on", "--predicted-only"]) == 0
     assert "the prediction decides" in capsys.readouterr().out
+
+
+def test_shadows_that_are_needed_and_left_out_are_offered(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = ["choose", "sample:torus", "--light", "0.9,0.2,0.35", "--predicted-only"]
+    for shadows in ("off", "on"):
+        assert main([*asked, "--shadows", shadows]) == 0
+        offered = "--shadows on makes it with them" in capsys.readouterr().out
+        assert offered == (shadows == "off")
+
+
+def test_warns_of_what_other_commands_warn_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ["choose", "sample:sphere", "--mm-per-unit", "20", "--predicted-only"]
+    assert main([*asked, "--material", "spectralon", "--light", "0,0,1"]) == 0
+    printed = capsys.readouterr()
+    assert "its glow has no end" in printed.err
+    assert ", 1 light, " in printed.out
+    path = tmp_path / "flipped.ply"
+    body = analytic.sphere(500, radius=10.0)
+    faces = body.mesh.faces.copy()
+    faces[:20] = faces[:20, ::-1]
+    path.write_bytes(ply(body.mesh.vertices, faces))
+    asked = ["choose", str(path), "--predicted-only"]
+    assert main(asked) == 0
+    assert "--repair orient" in capsys.readouterr().err
+    # And it does what it advises.
+    assert main([*asked, "--repair", "orient"]) == 0
+    assert "--repair orient" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("milliseconds", "text"),
+    [(0.1637, "0.164 ms"), (999.9, "1 s"), (36700.0, "36.7 s"), (51585850.0, "51,586 s")],
+)
+def test_times_are_written_as_people_read_them(milliseconds: float, text: str) -> None:
+    assert said.spent(milliseconds) == text
 
 
 def test_metric_and_tolerance_are_checked(ball: str) -> None:
