@@ -29,7 +29,7 @@ BENDS = ("none", "mean", "rms", "tensor")
 """See `Knowledge.bend`."""
 
 WEIGHTS = {
-    "first": 1.4,
+    "first": 2.2,
     "second": 1.0,
     "anisotropy": 1.2,
     "higher": 0.5,
