@@ -47,10 +47,11 @@ WEIGHTS = {
 """By how much each term of `lutcore.error_terms` counts.
 
 One set for all models, found together with the constants of `lutcore.error_terms` by a seeded
-random search for errors that cover 96.8 % and are no wider than 4.3 times the median for every
-model on every shape of the table of ``python -m tests.bench.prediction``, each in 60 scenes of
-other seeds, and rounded; not on the bunny. What is known of corners, facets and the gradient kept
-the constants that make its sign and size right.
+random search for errors that cover 96.8 % and are no wider than 4.3 times the median, for the six
+settings that are nearest to the truth, on every shape of the table of ``python -m
+tests.bench.prediction``, each in 60 scenes of other seeds, and rounded; not on the bunny. What is
+known of corners, facets and the gradient kept the constants that make its sign and size right;
+first was left larger than what it found, or blends would begin too steeply to have no seam.
 ``python -m tests.bench.prediction --tune 80`` prints what regression to the 95th percentile gives
 in scenes of its own, and what such a search over the weights alone finds from there.
 """
