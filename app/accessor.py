@@ -84,7 +84,7 @@ class CurvelightAccessor:
         mm_per_unit: float = 1.0,
         *,
         profile: DiffusionProfile | str = "jensen2001",
-        shadows: Shadows = "off",
+        shadows: Shadows | None = None,
         method: str = "auto",
         scale: float | None = None,
         exposure: float | None = None,
@@ -106,8 +106,9 @@ class CurvelightAccessor:
             Size of a mesh unit, mm.
         profile : DiffusionProfile or str
             How light spreads in the material, or its name; see `lutcore.diffusion_profiles`.
-        shadows : {"off", "on", "auto"}
-            Whether the surface casts shadows on itself, ``auto`` where they change much.
+        shadows : {"off", "on", "auto"}, optional
+            Whether the surface casts shadows on itself, ``auto`` where they change much; if not
+            given, ``auto`` for the model ``auto`` and ``off`` for others.
         method : str
             A curvature estimator.
         scale : float, optional
@@ -138,6 +139,8 @@ class CurvelightAccessor:
         from lutcore.parameters import create
         from lutcore.shading import AUTO, model_registry, shading_inputs
 
+        if shadows is None:
+            shadows = "auto" if model == AUTO else "off"
         if shadows not in get_args(Shadows):
             raise ParameterError.unknown("shadows", shadows, get_args(Shadows))
         mesh = self._mesh()

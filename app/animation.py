@@ -210,8 +210,8 @@ def _decided(session: Session, pipeline: Pipeline, camera: Camera) -> Session:
     if session.model.name == AUTO and session.view != "compare":
         # Before shadows are: what the session says of its scene is said of it as it was asked for.
         chosen = settled(pipeline.settled(session, session.model, cameras.axes(camera)))
-        session = replace(session, model=chosen.method)
-    if session.shadows == "auto":
+        session = replace(session, model=chosen.method, shadows=session.casts)
+    if session.casts == "auto":
         session = replace(session, shadows="on")
     return session
 

@@ -41,6 +41,11 @@ class Needs:
     glow: float
     tight: dict[str, float]
 
+    @property
+    def lacks_shadows(self) -> bool:
+        """Whether cast shadows change much, and the session has none."""
+        return self.shadows is not None and self.shadows.needed and not self.choice.shadowed
+
 
 def needs(
     session: Session,

@@ -22,7 +22,8 @@ def alone(session: Session) -> tuple[Session, ...]:
     -------
     tuple of Session
         In a comparison one for each of `Session.compared`, whose own picture has the same colours
-        if camera, exposure and range are given to it; else the session itself.
+        if camera, exposure and range are given to it, with the shadows that all have; else the
+        session itself.
 
     Raises
     ------
@@ -31,6 +32,7 @@ def alone(session: Session) -> tuple[Session, ...]:
     """
     if session.view != "compare":
         return (session,)
+    session = replace(session, shadows=session.casts)
     return tuple(_with(session, index) for index in range(len(session.compared)))
 
 

@@ -305,7 +305,10 @@ class _Studio:
         singles = []
         for one, label in zip(studios, labels(self.session), strict=True):
             one.exposure = self.exposure
-            singles.append(Single(one._lit(one.session.model, label), everywhere))
+            model = one.session.model
+            if model.name == AUTO and self.session.compared_by == "model":
+                label = one._named(model)  # noqa: PLW2901  what it came to, too
+            singles.append(Single(one._lit(model, label), everywhere))
         return singles
 
     def _curved(self) -> list[Single]:

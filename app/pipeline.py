@@ -48,7 +48,7 @@ class Pipeline(Scenes):
         from app.settling import taken
 
         said = key_of(taken(session, self, model, axes))
-        key = ("exitance", drafted, session.shadows, said, *self.scene_key(session, model, axes))
+        key = ("exitance", drafted, session.casts, said, *self.scene_key(session, model, axes))
         return self.once(key, lambda: self._shade(session, model, axes, drafted))
 
     def _shade(
@@ -144,5 +144,5 @@ class Pipeline(Scenes):
         if said is not None:
             return model_of(said)
         measured(self.progress)  # once on this machine, not in each process
-        key = ("settled", session.shadows, *self.scene_key(session, model, axes))
+        key = ("settled", session.casts, *self.scene_key(session, model, axes))
         return self.once(key, lambda: chosen.settled(self.shadowed(session, axes)))

@@ -156,14 +156,14 @@ def probe(session: Session, pipeline: Pipeline, vertex: int) -> Probe:
 def with_readings(
     found: Probe, session: Session, pipeline: Pipeline, camera: Camera, exposure: float
 ) -> Probe:
-    """Return the same with what each local model gives there, without cast shadows.
+    """Return the same with what each local model gives there, in the shadows that are cast.
 
     Parameters
     ----------
     found : Probe
         Of `probe`.
     session : Session
-        Its material, lights and detail are used.
+        Its material, lights, shadows and detail are used.
     pipeline : Pipeline
         Where arrays come from.
     camera : Camera
@@ -184,7 +184,7 @@ def with_readings(
     from lutcore.tolerance import relative
 
     frame = axes(camera)
-    inputs = pipeline.inputs(session, frame)
+    inputs = pipeline.shadowed(session, frame)
     assert inputs.curvatures is not None
     chosen = np.array([found.vertex])
     scene = Scene.of(inputs, inputs.curvatures)

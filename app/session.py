@@ -223,6 +223,9 @@ Quantity = Literal[
     "all",
 ]
 
+CHOSEN = "auto"
+"""The shading model that leaves it to the scene: `lutcore.shading.AUTO`, which loads slowly."""
+
 # One strong light from the right and a weak one from the left, as in the paper's Figure 1.
 FIGURE_LIGHTS = (
     Directional((0.9, 0.3, 0.3), (1.0, 1.0, 1.0), "camera"),
@@ -241,6 +244,7 @@ class Session(_Part, frozen=True):
     `settled` is what the model ``auto`` came to where the session was drawn: which model costs
     least differs between machines, and each scene that is still the same keeps it;
     `shadows` says whether the surface casts shadows on itself, ``auto`` where they change much;
+    None is ``auto`` for the model ``auto``, ``off`` for a model that has a name; see `casts`;
     `compared_by` says what `compared` names: shading models, estimators, whose `quantity` is
     shown, or materials; `wipe` shows two on one surface, the first left of this share of the
     surface's width; `difference` adds how far the others are from the first;
@@ -263,7 +267,7 @@ class Session(_Part, frozen=True):
     material: str | Substance = "skin1"
     lights: tuple[Directional | Point | Cone, ...] = FIGURE_LIGHTS
     profile: Method = Method("jensen2001")
-    shadows: Shadows = "off"
+    shadows: Shadows | None = None
     model: Method = Method("curvature-lut")
     settled: tuple[Settled, ...] = ()
     compared: tuple[Method, ...] = ()
@@ -297,6 +301,18 @@ class Session(_Part, frozen=True):
             raise ValueError(
                 f"percentiles = {self.percentiles!r}: the first must be below the second"
             )
+
+    @property
+    def casts(self) -> Shadows:
+        """Whether the surface casts shadows: what `shadows` says, or else the model.
+
+        All that is compared has the same.
+        """
+        if self.shadows is not None:
+            return self.shadows
+        several = self.view == "compare" and self.compared_by == "model"
+        models = self.compared if several else (self.model,)
+        return "auto" if any(one.name == CHOSEN for one in models) else "off"
 
 
 def to_json(session: Session) -> bytes:

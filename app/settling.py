@@ -138,7 +138,7 @@ def _scene(session: Session, pipeline: "Pipeline", model: Method, axes: FloatArr
         # + 0.0 makes -0.0 the same.
         (np.round(axes, _DIGITS) + 0.0).tolist() if moving else None,
     )
-    if session.shadows != "off":  # what was recorded without them holds; films say on for auto
+    if session.casts != "off":  # what was recorded without them holds; films say on for auto
         parts = (*parts, "shadows")
     text = msgspec.json.encode(parts, order="sorted")
     return hashlib.sha256(text).hexdigest()[:16]

@@ -184,7 +184,7 @@ def _meaning(session: Session, trying: Trying, own: float) -> tuple[str, ...]:
         "off": "no cast shadows on either side",
         "on": "cast shadows on both sides",
         "auto": "cast shadows, if they change much, on both sides",
-    }[session.shadows]
+    }[session.casts]
     return (
         f"{_MEANING[trying.metric]} Reference: the profile {session.profile.name} gathered from "
         f"every triangle at {trying.sample} vertices, {shadows}; itself within "
@@ -203,6 +203,6 @@ def _facts(session: Session, pipeline: Pipeline, count: int, exposure: float) ->
         "material": pipeline.material(session).name,
         "profile": session.profile.name,
         "lights": len(session.lights),
-        "shadows": session.shadows,
+        "shadows": session.casts,
         "exposure": exposure,
     }

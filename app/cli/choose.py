@@ -84,12 +84,13 @@ def run(arguments: argparse.Namespace) -> int:
     from app.camera import axes, camera_of
     from app.choosing import needs
     from app.pipeline import Pipeline
+    from app.session import CHOSEN, Method
     from lutcore.tolerance import DEFAULTS, Tolerance
 
     start = time.perf_counter()
     given = arguments.tolerance
     value = DEFAULTS[arguments.metric] if given is None else _TOLERANCE.check("tolerance", given)
-    session = session_from(arguments, view="shade")
+    session = session_from(arguments, view="shade", model=Method(CHOSEN))
     pipeline = Pipeline(progress(arguments))
     warnings = remarks(session, pipeline)
     for warning in warnings:

@@ -49,8 +49,8 @@ def text(session: "Session", pipeline: "Pipeline", found: "Needs") -> str:
         need = "needed" if found.shadows.needed else "not needed"
         change = f"{100.0 * found.shadows.change:.1f} % of the light (root mean square)"
         ask = ""
-        if found.shadows.needed and not choice.shadowed:
-            ask = "; the choice is made without them, --shadows on makes it with them"
+        if found.lacks_shadows:
+            ask = "; the choice is made without them, --shadows auto makes it with them"
         lines.append(f"shadows: {need}; they change {change}{_unshadowed(choice)}{ask}")
     if found.scale is not None:
         finer = f"light carries an edge by {found.glow:.3g}"

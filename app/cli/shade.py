@@ -94,16 +94,18 @@ def _shade(work: Run) -> int:
         exposure = exposure or auto_exposure(exitance)
         mesh = work.pipeline.subject(work.session).mesh
         export.save(work.output, mesh, export.shading_arrays(exitance, exposure))
-    settled = work.settled(camera)
+    settled, cast = work.settled(camera), work.casting(camera)
     result = work.summary(warnings)
     if work.arguments.json:  # else nobody would read it
-        result |= _told(work, settled, exposure, exitance)
-    chosen = f", shaded with {settled.label}" if work.session.model.name == AUTO else ""
+        result |= _told(work, settled, cast, exposure, exitance)
+    chosen = ""
+    if work.session.model.name == AUTO:
+        chosen = f", shaded with {settled.label}{', and casting shadows' if cast else ''}"
     return work.finish(result, f"wrote {work.output}{chosen}")
 
 
 def _told(
-    work: Run, settled: Settled, exposure: float | None, exitance: "FloatArray"
+    work: Run, settled: Settled, cast: bool, exposure: float | None, exitance: "FloatArray"
 ) -> dict[str, object]:
     from lutcore.statistics import percentiles
 
@@ -113,6 +115,7 @@ def _told(
         "profile": work.session.profile.name,
         "model": work.session.model.name,
         "settled": settled.as_json(),
+        "shadows": cast,
         "scale": work.pipeline.scale(work.session),
         "widths": None if seen is None else seen.widths.tolist(),
         "exposure": exposure,

@@ -156,6 +156,24 @@ class Run:
         model = self.session.model
         return settled(self.pipeline.settled(self.session, model, self._axes(camera)))
 
+    def casting(self, camera: Camera | None = None) -> bool:
+        """Tell whether the surface casts shadows on itself.
+
+        Parameters
+        ----------
+        camera : Camera, optional
+            As for `exitance`.
+
+        Returns
+        -------
+        bool
+            Also where that is left to the scene.
+        """
+        from app.lighting import world_lights
+
+        lights = world_lights(self.session, self._axes(camera))
+        return self.pipeline.casting(self.session, lights)
+
     def _axes(self, camera: Camera | None) -> FloatArray:
         from app.camera import axes, camera_of
 

@@ -83,7 +83,7 @@ class Choosing:
             found = needs(session, pipeline, frame, Tolerance(value, "relative"))
             if not mapping:
                 return found, None
-            inputs = pipeline.inputs(session, frame)
+            inputs = pipeline.shadowed(session, frame)
             rungs = found.choice.rungs
             return found, sufficient(inputs, rungs, value, part(progress, 0.5, 1.0))
 
@@ -124,7 +124,12 @@ class Choosing:
             Of `needs`.
         """
         method = Method(rung.candidate.name, dict(rung.candidate.parameters))
-        self._controller.change(f"model {method.label}", model=method, view="shade")
+        session = self._controller.session
+        # It was judged in the shadows that auto casts, and keeps them.
+        shadows = "auto" if session.casts == "auto" else session.shadows
+        self._controller.change(
+            f"model {method.label}", model=method, view="shade", shadows=shadows
+        )
 
     def _show(self, answer: "tuple[Needs, Sufficient | None]") -> None:
         self.needs, self.map = answer

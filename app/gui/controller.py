@@ -15,7 +15,7 @@ from app.gui.document import Document
 from app.gui.memory import keep_large_apart
 from app.gui.worker import Post, Worker
 from app.pipeline import Pipeline
-from app.session import Camera, Session, Settled
+from app.session import CHOSEN, Camera, Session, Settled
 from app.steps.subject import Subject
 from lutcore.compiling import compile_elsewhere
 from lutcore.errors import CurvelightError
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 SESSION_SUFFIX = ".json"
-_AUTO = "auto"  # that of `lutcore.shading`, which takes a while to load
 _GREY = 10.0  # s that the worker waits for the first frame at most, in case none comes
 # A change of anything else leaves what is being computed of use: it is seen while dragging.
 _LIVE = {
@@ -347,10 +346,10 @@ class Controller:
         settled: tuple[Settled, ...] = ()
         exposure = held.exposure if held else None
         drafted = held is not None and _changed(session, held.session) <= _OF_LIGHT
-        if held and held.settled and session.model.name == _AUTO and session.view != "compare":
+        if held and held.settled and session.model.name == CHOSEN and session.view != "compare":
             # To choose anew for each place of a light takes a second, and may flicker.
             settled = held.settled
-            drawn = replace(session, model=settled[0].method)
+            drawn = replace(session, model=settled[0].method, shadows=session.casts)
             made = compose(drawn, self.pipeline, exposure, drafted)
         else:
             made = compose(session, self.pipeline, exposure, drafted)

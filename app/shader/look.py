@@ -114,7 +114,7 @@ def unsupported(session: Session, subject: Subject) -> str:
         return f"the model {session.model.name} has no shader"
     if len(session.lights) > MOST_LIGHTS:
         return f"the shader has room for {MOST_LIGHTS} lights"
-    if session.shadows != "off":
+    if session.casts != "off":
         return "shadows are cast on vertices"
     if session.albedo and subject.loaded.texture is not None:
         return "a texture is drawn under light at vertices"

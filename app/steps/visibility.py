@@ -14,6 +14,29 @@ if TYPE_CHECKING:
 class Visibility(Measurements):
     """Casts shadows."""
 
+    def casting(self, session: Session, lights: "Sequence[Light]") -> bool:
+        """Tell whether the surface casts shadows.
+
+        Parameters
+        ----------
+        session : Session
+            Its `casts` and, for `auto`, its mesh and curvature are used.
+        lights : sequence of DirectionalLight, PointLight or ConeLight
+            The lights, in world axes.
+
+        Returns
+        -------
+        bool
+            Always false without lights.
+        """
+        if session.casts != "auto" or not lights:
+            return session.casts == "on" and bool(lights)
+        from lutcore.lights import pack
+        from lutcore.visibility import forecast
+
+        mesh, packed = self.subject(session).mesh, pack(lights)
+        return forecast(mesh, self.facing(session), packed).needed
+
     def visibility(
         self, session: Session, local: bool, lights: "Sequence[Light]"
     ) -> FloatArray | None:
@@ -22,7 +45,7 @@ class Visibility(Measurements):
         Parameters
         ----------
         session : Session
-            Its mesh, `shadows`, material, profile and, for `auto`, its curvature are used.
+            Its mesh, `casts`, material, profile and, for `auto`, its curvature are used.
         local : bool
             Whether for a local model, which gets shadows that are softened as light spreads.
         lights : sequence of DirectionalLight, PointLight or ConeLight
@@ -33,17 +56,13 @@ class Visibility(Measurements):
         ndarray, shape=(l, n) or (l, n, 3), or None
             Shares from 0 to 1; None where the session casts no shadows.
         """
-        if session.shadows == "off" or not lights:
+        if not self.casting(session, lights):
             return None
         from lutcore.lights import pack
-        from lutcore.visibility import forecast, softened, visibility
+        from lutcore.visibility import softened, visibility
 
         subject = self.subject(session)
         packed = pack(lights)
-        if session.shadows == "auto":
-            normals = self.facing(session)
-            if not forecast(subject.mesh, normals, packed).needed:
-                return None
         key = ("visibility", subject.key, packed.tobytes())
         seen = self.once(key, lambda: visibility(subject.mesh, packed, self.progress))
         if not local:

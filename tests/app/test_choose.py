@@ -59,6 +59,7 @@ def test_prints_one_object(ball: str, capsys: pytest.CaptureFixture[str]) -> Non
     assert found["choice"]["reason"]
     assert found["table_samples"] in (8, 16, 32, 64, 128)
     assert not found["shadows"]["needed"]  # a ball is convex
+    assert not found["check"]["shadows"]
     unknown = [rung for rung in found["ladder"] if rung["model"] == "curvature-lut-physical"]
     assert all(rung["score"] is None and not rung["adequate"] for rung in unknown)
 
@@ -102,8 +103,9 @@ def test_the_check_overrules_the_prediction(ball: str, capsys: pytest.CaptureFix
 def test_shadows_that_the_scene_casts_are_in_the_check(capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["choose", "sample:torus", "--mm-per-unit", "3", "--light", "0.9,0.2,0.35"]
     loose = [*asked, "--tolerance", "0.2"]
-    for shadows in ("off", "on", "auto"):
-        assert main([*loose, "--shadows", shadows, "--json"]) == 0
+    for shadows in ("off", "on", "auto", None):
+        said = ["--shadows", shadows] if shadows else []
+        assert main([*loose, *said, "--json"]) == 0
         found = json.loads(capsys.readouterr().out)
         assert found["shadows"]["needed"]
         assert found["check"]["shadows"] == (shadows != "off")
@@ -123,9 +125,10 @@ def test_shadows_that_are_needed_and_left_out_are_offered(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     asked = ["choose", "sample:torus", "--light", "0.9,0.2,0.35", "--predicted-only"]
-    for shadows in ("off", "on"):
-        assert main([*asked, "--shadows", shadows]) == 0
-        offered = "--shadows on makes it with them" in capsys.readouterr().out
+    for shadows in ("off", "on", None):
+        said = ["--shadows", shadows] if shadows else []
+        assert main([*asked, *said]) == 0
+        offered = "--shadows auto makes it with them" in capsys.readouterr().out
         assert offered == (shadows == "off")
 
 

@@ -7,7 +7,7 @@ from app.camera import axes
 from app.picture import compose
 from app.pipeline import Pipeline
 from app.probing import nearest_vertex, probe, with_readings
-from app.session import Method, Session
+from app.session import Directional, Method, Session
 from lutcore.shading import model_registry, shading_models
 
 
@@ -16,13 +16,15 @@ from lutcore.shading import model_registry, shading_models
     [
         Session(mesh="sample:sphere", mm_per_unit=0.2),
         Session(mesh="sample:torus", model=Method("wrap", {"width": 0.3}), scale=0.7),
+        # Under a low light the ring shadows its far inner side: vertex 2722.
+        Session(mesh="sample:torus", lights=(Directional((0.3, 0.9, 0.2)),), shadows="on"),
     ],
 )
 def test_the_color_of_the_sessions_model_is_that_of_the_picture(session: Session) -> None:
     pipeline = Pipeline()
     made = compose(session, pipeline)
     shown = made.panels[0].content.rgb
-    for vertex in (0, 17, 2000):
+    for vertex in (0, 17, 2000, 2722):
         found = probe(session, pipeline, vertex)
         found = with_readings(found, session, pipeline, made.camera, made.exposure)
         assert found.readings[0].model == session.model.label

@@ -2,6 +2,7 @@ import json
 
 import numpy as np
 import pytest
+import pyvista
 from msgspec.structs import replace
 
 from app import costs as costs_file
@@ -9,6 +10,7 @@ from app.animation import stage
 from app.animation_motion import Motion
 from app.camera import axes, camera_of
 from app.cli.main import main
+from app.picture import compose
 from app.pipeline import Pipeline
 from app.probing import probe, with_readings
 from app.session import Directional, Method, Session, Settled, from_json, read, to_json
@@ -16,6 +18,7 @@ from app.settling import model_of, recorded, settled
 from lutcore.blend import Blend
 from lutcore.costs import COLORS, PREDICTION, Cost, candidates, forget, remember
 from lutcore.errors import ParameterError
+from lutcore.lights import DirectionalLight
 from lutcore.shading import model_registry
 
 AXES = np.eye(3)
@@ -118,7 +121,7 @@ def test_a_session_keeps_what_auto_came_to_in_its_scene():
 )
 def test_a_blend_is_drawn_again_to_the_last_bit(metric, value, mm):
     auto = Method("auto", {"tolerance": value, "metric": metric})
-    session = Session(mesh="sample:torus", mm_per_unit=mm, model=auto)
+    session = Session(mesh="sample:torus", mm_per_unit=mm, model=auto, shadows="off")
     for one in candidates():
         cheap = one.label == "lambert (fresnel directional)"
         dear = 1e4 if one.label == "curvature-lut" else 1e6
@@ -150,19 +153,40 @@ def test_shadows_make_another_scene():
     assert found["off"] != found["on"] == found["auto"]
 
 
+@pytest.mark.parametrize("mesh", ["torus", "sphere"])
+def test_auto_casts_the_shadows_that_change_its_scene(mesh):
+    # Under a low light the ring shadows its far inner side; a ball shadows nothing.
+    lights = (Directional((0.3, 0.9, 0.2)), Directional((1.0, 0.0, 0.0)))
+    auto = Method("auto", {"check": "none", "tolerance": 1.0})
+    session = Session(mesh=f"sample:{mesh}", lights=lights, model=auto)
+    pipeline = Pipeline()
+    found, off, cast = (
+        pipeline.exitance(replace(session, shadows=shadows), auto, AXES)
+        for shadows in (None, "off", "on")
+    )
+    np.testing.assert_array_equal(found, cast if mesh == "torus" else off)
+    assert (off.mean() > 1.01 * cast.mean()) == (mesh == "torus")
+    # PyVista's accessor does the same.
+    body, size = pipeline.subject(session).mesh, pipeline.mm_per_unit(session)
+    surface = pyvista.PolyData.from_regular_faces(body.vertices, body.faces)
+    given = [DirectionalLight(light.direction) for light in lights]
+    shaded = surface.curvelight.shade("skin1", given, "auto", size, exposure=1.0, **auto.parameters)
+    np.testing.assert_array_equal(shaded["shading"], found.astype(np.float32))
+
+
 def test_a_film_is_shaded_with_what_its_session_says():
     auto = Method("auto", {"check": "none"})
     session = Session(
         mesh="sample:torus",
         mm_per_unit=1000.0,
         model=auto,
-        shadows="auto",
         lights=(Directional((0.3, 0.9, 0.2), frame="world"),),
     )
     kept = recorded(session, Pipeline(), AXES)
     another_machine()
     motion = Motion("turntable", 0.5, 4.0)
-    assert stage(kept, Pipeline(), motion).session.model == kept.settled[0].method
+    staged = stage(kept, Pipeline(), motion).session
+    assert (staged.model, staged.shadows) == (kept.settled[0].method, "on")
     assert stage(session, Pipeline(), motion).session.model != kept.settled[0].method
 
 
@@ -221,4 +245,25 @@ def test_shade_says_which_model_auto_took(tmp_path, capsys):
     assert main([*arguments, "--model", "auto"]) == 0
     assert f"shaded with {name}" in capsys.readouterr().out
     assert main([*arguments, "--model", "lambert", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["settled"]["model"] == "lambert"
+    other = json.loads(capsys.readouterr().out)
+    assert other["settled"]["model"] == "lambert" and not other["shadows"]
+
+
+@pytest.mark.parametrize("shadows", [None, "off"])
+def test_shade_says_whether_auto_cast_shadows(tmp_path, capsys, shadows):
+    arguments = ["shade", "sample:torus", "-o", str(tmp_path / "o.npz"), "--model", "auto"]
+    arguments += ["--light", "0.3,0.9,0.2", "--tolerance", "1", "--check", "none"]
+    arguments += ["--shadows", shadows] if shadows else []
+    assert main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["shadows"] == (shadows is None)
+    assert main(arguments) == 0
+    assert ("casting shadows" in capsys.readouterr().out) == (shadows is None)
+
+
+def test_a_comparison_says_what_auto_came_to():
+    compared = Method("lambert"), Method("auto", {"tolerance": 1.0, "check": "none"})
+    session = Session(mesh="sample:sphere", view="compare", compared=compared)
+    pipeline = Pipeline()
+    first, second = (panel.content.caption for panel in compose(session, pipeline).panels)
+    name = settled(pipeline.settled(session, compared[1], AXES)).label
+    assert (first, second) == ("lambert", f"auto: {name}")

@@ -2,8 +2,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from app.contestants import alone
 from app.pipeline import Pipeline
-from app.session import Directional, Method, Session
+from app.session import CHOSEN, Directional, Method, Session
+from lutcore.shading import AUTO
 
 AXES = np.eye(3)
 LOCAL, REFERENCE = Method("lambert"), Method("jensen2002")
@@ -19,7 +21,7 @@ def pipeline():
 
 @pytest.mark.parametrize("model", [LOCAL, REFERENCE])
 def test_shadows_darken_and_are_off_unless_asked_for(pipeline, model):
-    assert Session().shadows == "off"
+    assert Session().casts == "off"
     without = pipeline.exitance(TORUS, model, AXES)
     cast = pipeline.exitance(replace(TORUS, shadows="on"), model, AXES)
     assert cast.mean() < 0.99 * without.mean()
@@ -35,3 +37,24 @@ def test_a_convex_body_needs_none(pipeline, model):
     without = pipeline.exitance(SPHERE, model, AXES)
     chosen = pipeline.exitance(replace(SPHERE, shadows="auto"), model, AXES)
     np.testing.assert_array_equal(chosen, without)
+
+
+def test_they_are_left_to_the_scene_where_the_model_is():
+    auto = Method("auto")
+    assert replace(TORUS, model=auto).casts == "auto"
+    for said in ("off", "on", "auto"):
+        assert replace(TORUS, model=auto, shadows=said).casts == said
+        assert replace(TORUS, model=LOCAL, shadows=said).casts == said
+    # All that is compared is lit by the same, and so is each of it alone.
+    models = replace(TORUS, view="compare", compared=(LOCAL, auto))
+    assert models.casts == "auto"
+    assert {one.casts for one in alone(models)} == {"auto"}
+    assert replace(models, compared=(LOCAL, REFERENCE)).casts == "off"
+    # An estimator of that name is no model, nor is a model that is not shown.
+    estimators = replace(models, compared=(auto, Method("ball-jet")), compared_by="estimator")
+    assert estimators.casts == "off"
+    assert replace(models, compared=(LOCAL, REFERENCE), model=auto).casts == "off"
+
+
+def test_the_name_is_that_of_the_model():
+    assert CHOSEN == AUTO

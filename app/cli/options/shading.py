@@ -32,7 +32,8 @@ def add_shading(parser: argparse.ArgumentParser, words: list[str], with_model: b
     group.add_argument(
         "--shadows",
         choices=get_args(Shadows),
-        help="whether the surface casts shadows on itself; auto: where they change more than 1 %%",
+        help="whether the surface casts shadows on itself; auto: where they change more than 1 %%, "
+        "which the model auto does by itself",
     )
     lights = {
         "--light": (directional, "X,Y,Z[,E]", "directional light TO x,y,z"),

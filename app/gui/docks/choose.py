@@ -135,6 +135,7 @@ class ChoosePanel(QWidget):
             session.mm_per_unit,
             session.scale,
             session.estimator,
+            session.casts,
         )
         if about != self._asked and self.isVisible():
             self._asked = about
@@ -173,7 +174,11 @@ class ChoosePanel(QWidget):
         ]
         self.chart.show_dots(dots, choice.tolerance.value)
         sentence = choice.sentence
-        self.sentence.setText(f"{sentence[:1].upper()}{sentence[1:]}.")
+        sentence = f"{sentence[:1].upper()}{sentence[1:]}."
+        if needs.shadows is not None and needs.lacks_shadows:
+            share = 100.0 * needs.shadows.change
+            sentence += f" Cast shadows, which are off, would change {share:.1f} % of the light."
+        self.sentence.setText(sentence)
 
     def _on_picked(self, index: int) -> None:
         if self.choosing.needs is not None:

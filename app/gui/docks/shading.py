@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 TITLE, AREA, ORDER, SHOWN = "Shading", "right", 1, True
 _SHADOWS = {
+    "": "off, but for the model auto",
     "off": "off",
     "on": "on",
     "auto": "where they change much",
@@ -79,9 +80,11 @@ class ShadingPanel(QWidget):
         for data, text in _SHADOWS.items():
             self.shadows.addItem(text, data)
         self.shadows.setAccessibleName("Shadows")
-        self.shadows.setToolTip("Whether the surface casts shadows on itself")
+        self.shadows.setToolTip(
+            "Whether the surface casts shadows on itself; the model auto finds out by itself"
+        )
         self.shadows.activated.connect(
-            lambda _: controller.change("shadows", shadows=self.shadows.currentData())
+            lambda _: controller.change("shadows", shadows=self.shadows.currentData() or None)
         )
         self.exposure = Slider(
             "Exposure",
@@ -126,7 +129,7 @@ class ShadingPanel(QWidget):
             self.unit.follow(session.mm_per_unit)
         if session.exposure is not None:
             self.exposure.follow(math.log2(session.exposure))
-        self.shadows.setCurrentIndex(self.shadows.findData(session.shadows))
+        self.shadows.setCurrentIndex(self.shadows.findData(session.shadows or ""))
         self.albedo.setChecked(session.albedo)
         self.flat.setChecked(session.flat)
         asked = session.material, session.profile

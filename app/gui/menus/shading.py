@@ -59,7 +59,7 @@ def actions(window: "Window") -> list[Action]:
             "Cast shadows",
             "Let the surface cast shadows on itself",
             partial(_shadows, window),
-            checked=lambda: controller.session.shadows != "off",
+            checked=lambda: controller.session.casts != "off",
         ),
         *added,
         Action(
@@ -87,5 +87,5 @@ def _albedo(window: "Window") -> None:
 
 def _shadows(window: "Window") -> None:
     controller = window.controller
-    shadows = "on" if controller.session.shadows == "off" else "off"
+    shadows = "on" if controller.session.casts == "off" else "off"
     controller.change("shadows", shadows=shadows)

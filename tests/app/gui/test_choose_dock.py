@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
 
+from app.session import Directional, Method, Session
 from lutcore.costs import COLORS, PREDICTION, Cost, candidates
 from tests.app.gui.conftest import pixels, settled
 from tests.app.gui.hands import click_menu, tick
@@ -11,12 +12,17 @@ from tests.app.gui.mouse import move
 
 
 @pytest.fixture
-def choose(window, qtbot, monkeypatch):
-    """The dock, with costs as if this machine had been measured."""
+def measured(monkeypatch):
+    """Costs as if this machine had been measured."""
     costs = {one.label: Cost(10.0 + n, one.model.growth) for n, one in enumerate(candidates())}
     costs[PREDICTION] = costs[COLORS] = Cost(5.0, "n")
     monkeypatch.setattr("app.costs.known", lambda: True)
     monkeypatch.setattr("app.choosing.measured", lambda progress, again: costs)
+
+
+@pytest.fixture
+def choose(window, qtbot, measured):
+    """The dock."""
     click_menu(qtbot, window, "Window", "Choose")
     panel = window.docks["choose"].fill()
     qtbot.waitUntil(lambda: panel.choosing.needs is not None, timeout=300_000)
@@ -46,6 +52,31 @@ def test_a_click_on_a_point_uses_that_model(window, qtbot, choose) -> None:
     )
     qtbot.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert window.controller.session.model.name == "curvature-lut"
+
+
+def test_shadows_that_are_off_and_change_much_are_told(open_window, qtbot, measured) -> None:
+    window = open_window(Session(mesh="sample:torus", lights=(Directional((0.9, 0.2, 0.35)),)))
+    settled(qtbot, window)
+    click_menu(qtbot, window, "Window", "Choose")
+    panel = window.docks["choose"].fill()
+    qtbot.waitUntil(lambda: panel.choosing.needs is not None, timeout=300_000)
+    told = "Cast shadows, which are off, would change"
+    assert told in panel.sentence.text()
+    # They are asked about anew as soon as they are cast.
+    window.controller.change("shadows", shadows="auto")
+    qtbot.waitUntil(lambda: told not in panel.sentence.text(), timeout=300_000)
+    assert panel.choosing.needs.choice.shadowed
+
+
+def test_what_was_judged_in_shadows_keeps_them(window, choose) -> None:
+    controller, rung = window.controller, choose.choosing.needs.choice.rungs[0]
+    controller.change("model", model=Method("auto"))
+    choose.choosing.take(rung)
+    assert controller.session.model.name == rung.candidate.name
+    assert controller.session.shadows == "auto"
+    controller.change("shadows", shadows=None)
+    choose.choosing.take(rung)
+    assert controller.session.shadows is None
 
 
 def test_the_tolerance_moves_the_choice(window, qtbot, choose) -> None:

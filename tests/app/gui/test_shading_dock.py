@@ -125,6 +125,11 @@ def test_the_profile_and_shadows_are_chosen(qtbot, window, panel):
     settled(qtbot, window)
     session = window.controller.session
     assert session.profile.name == "burley2015" and session.shadows == "on"
+    choose(qtbot, panel.shadows, panel.shadows.itemText(0))
+    assert window.controller.session.shadows is None and panel.shadows.currentIndex() == 0
+    window.controller.change("model", model=Method("auto"))
+    assert window.controller.session.casts == "auto" and panel.shadows.currentIndex() == 0
+    undo(qtbot, window)
 
 
 def test_exposure_is_automatic_or_in_stops(qtbot, window, panel):
