@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from lutcore.arrays import BoolArray, FloatArray, IndexArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.cosmoothing import Smoothed, Surface
-from lutcore.tensors import principal
 
 # Rings from the rim where a new class of vertices begins; beyond the last, the interior. Near a
 # rim noise is averaged along the rim alone and fades more slowly with the scale.
@@ -34,7 +33,7 @@ _ROOM = (0.125, 8.0)
 _VOTERS = 4_000
 # The quiet quarter of a mesh tells the noise, the rest may hold detail; of pure noise, averaged as
 # here, the 25th percentile is this share of the mean.
-_QUARTER, _QUARTER_OF_MEAN = 25.0, 0.7
+_QUARTER, _QUARTER_OF_MEAN = 0.25, 0.7
 # Noise is alike everywhere: of pure noise the 75th percentile is 1.6 to 2.2 times the 25th. The
 # more it is, from the first to the second of these, and at more spacings than neighbours' noise may
 # be correlated over, energy that does not fade from band to band by at least a factor (white noise:
@@ -48,9 +47,9 @@ class Bands(NamedTuple):
 
     Parameters
     ----------
-    energy : ndarray of float32, shape=(n, S)
+    energy : ndarray of float32, shape=(n, S or more)
         Mean square of a principal curvature's change from each scale to the next, averaged over
-        the neighbourhood, 1/mesh unit squared.
+        the neighbourhood, 1/mesh unit squared; columns behind the S of `noise` are none.
     room : ndarray of float32, shape=(n,)
         Vertex area over the median, averaged likewise: what white noise of a scale that spans
         several vertices is in proportion to.
@@ -103,22 +102,21 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
         table, spare = spare, table
     columns = table[0] if groups == 1 else np.concatenate(table, axis=1)
     room, lean = np.clip(columns[:, count], *_ROOM), columns[:, count + 1].copy()
-    energy = np.ascontiguousarray(columns[:, :count])
     place = _places(start, neighbour, on.operator.rim)
-    noise = _noise(energy, room, place, np.array(smoothed.scales) / on.spacing)
+    noise = _noise(columns, room, place, np.array(smoothed.scales[:-1]) / on.spacing)
     # Beyond the last band the noise goes on fading as it did between the last two.
     ratio = np.clip(noise[:, -1] / noise[:, -2], 0.1, 0.6)
     left = (
         np.cumsum(noise[:, ::-1], axis=1)[:, ::-1] + (noise[:, -1] * ratio / (1 - ratio))[:, None]
     )
-    return Bands(energy, room, place, noise, left, lean)
+    return Bands(columns, room, place, noise, left, lean)
 
 
 def _noise(
     energy: SingleArray, room: SingleArray, place: NDArray[np.int8], spacings: FloatArray
 ) -> FloatArray:
     """Return the part of each class's energy that is noise, where room is 1."""
-    noise = np.empty((INTERIOR + 1, energy.shape[1]))
+    noise = np.empty((INTERIOR + 1, len(spacings)))
     for kind in (INTERIOR, *range(INTERIOR)):
         members = np.flatnonzero(place == kind)
         if len(members) < _LEAST_CLASS:
@@ -127,15 +125,17 @@ def _noise(
                 continue
             members = np.arange(len(energy))
         members = members[:: 1 + len(members) // _VOTERS]
-        voters = energy[members]
-        voters[:, 1:] /= room[members, None]
+        voters = np.ascontiguousarray(energy[members, : len(spacings)].T)
+        voters[1:] /= room[members]
         noise[kind] = _faded(voters, spacings, _FADING if kind == INTERIOR else _FADING_AT_RIM)
     return noise
 
 
 def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArray:
-    """Return the noise in the bands of one class."""
-    quiet, loud = np.percentile(voters, (_QUARTER, 100.0 - _QUARTER), axis=0) + _NONE
+    """Return the noise in the bands of one class, each a row of its voters."""
+    # As `np.percentile`, which takes three times as long as sorting.
+    ranked = np.sort(voters, axis=1).astype(np.float64)
+    quiet, loud = (_quarter(one) + _NONE for one in (ranked, ranked[:, ::-1]))
     noise = quiet / _QUARTER_OF_MEAN
     for band in range(1, len(noise)):
         apart = np.log(loud[band] / quiet[band])
@@ -145,6 +145,15 @@ def _faded(voters: SingleArray, spacings: FloatArray, fading: float) -> FloatArr
         faded = min(1.0, noise[band - 1] / fading / noise[band])
         noise[band] *= faded**doubt
     return noise
+
+
+def _quarter(ranked: FloatArray) -> FloatArray:
+    """Return the value that a quarter of each sorted row lies before."""
+    rank = _QUARTER * (ranked.shape[1] - 1)
+    before = int(rank)
+    after = min(before + 1, ranked.shape[1] - 1)
+    found: FloatArray = ranked[:, before] + (rank - before) * (ranked[:, after] - ranked[:, before])
+    return found
 
 
 @compiled(parallel=True)
@@ -160,11 +169,12 @@ def _energies(tensors: SingleArray, areas: FloatArray, middle: int, table: Singl
         table[scales // width, i, scales % width] = areas[i]
         for band in range(scales + 1, table.shape[0] * width):
             table[band // width, i, band % width] = 0.0
-        k1, k2, c, s = principal(
-            tensors[i, middle, 0], tensors[i, middle, 1], tensors[i, middle, 2]
-        )
-        gap = (k1 - k2) ** 2
-        cosine, sine = c * c - s * s, 2.0 * c * s
+        # Of the principal frame it takes the cosine and sine of twice its angle.
+        skew = 0.5 * (float(tensors[i, middle, 0]) - float(tensors[i, middle, 2]))
+        shear = float(tensors[i, middle, 1])
+        radius = np.sqrt(skew * skew + shear * shear)  # (k1 - k2)/2; no float32's square underflows
+        gap = 4.0 * radius * radius
+        cosine, sine = (skew / radius, shear / radius) if radius > 0.0 else (1.0, 0.0)
         for band in range(scales):
             xx = tensors[i, band, 0] - tensors[i, band + 1, 0]
             xy = tensors[i, band, 1] - tensors[i, band + 1, 1]

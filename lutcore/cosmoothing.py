@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import prange
+from numpy.typing import NDArray
 
 from lutcore.arrays import FloatArray, IndexArray, SingleArray
 from lutcore.compiled import compiled
@@ -212,7 +213,6 @@ def shape_operators(
     return normals, tensors, stretch
 
 
-@compiled(parallel=True, packed=True)
 def fit_shape_operators(
     start: IndexArray,
     neighbour: IndexArray,
@@ -226,12 +226,29 @@ def fit_shape_operators(
     stretch: SingleArray,
 ) -> None:
     """Do what `shape_operators` does, into arrays that are there."""
+    # Unsigned: compiled loops need not ask whether an index counts from the end.
+    links = start.view(np.uint32), neighbour.view(np.uint32)
+    widest = int(np.diff(start).max())
+    _fit(*links, widest, fields, change, base, spacing, first, normals, tensors, stretch)
+
+
+@compiled(parallel=True, packed=True)
+def _fit(
+    start: NDArray[np.uint32],
+    neighbour: NDArray[np.uint32],
+    widest: int,
+    fields: FloatArray,
+    change: SingleArray,
+    base: int,
+    spacing: float,
+    first: int,
+    normals: FloatArray,
+    tensors: SingleArray,
+    stretch: SingleArray,
+) -> None:
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
-    widest = 0
-    for i in range(count):
-        widest = max(widest, start[i + 1] - start[i])
     for i in prange(count):
         n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n

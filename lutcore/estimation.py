@@ -8,6 +8,7 @@ from lutcore.arrangement import arranged
 from lutcore.arrays import FloatArray, finite
 from lutcore.curvature import Estimator, PrincipalCurvatures
 from lutcore.errors import ParameterError
+from lutcore.heap import keep_freed
 from lutcore.mesh import TriangleMesh
 from lutcore.parameters import Parameters, create
 from lutcore.progress import Progress, silent, tell
@@ -83,6 +84,7 @@ def principal_curvatures(
     """
     plugin = create(estimator_registry.get(method), f"curvature estimator {method!r}", parameters)
     lengths = None if scale is None else _checked(scale, mesh, plugin, method)
+    keep_freed()
     tell(progress, 0.0, "joining vertices")
     welded = arranged(weld(mesh))
     if welded.mesh is None:

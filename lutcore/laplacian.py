@@ -108,11 +108,15 @@ def _relative_to_largest(start: IndexArray, rate: NDArray[np.float32]) -> float:
 
 
 @compiled()
-def _cotangent(vertices: FloatArray, apex: int, a: int, b: int) -> float:
+def _cotangents(vertices: FloatArray, apex: int, a: int, b: int) -> tuple[float, float]:
+    """Return the cotangents of a triangle's angles at a and b."""
     ux, uy, uz = edge(vertices, apex, a)
     vx, vy, vz = edge(vertices, apex, b)
+    wx, wy, wz = vx - ux, vy - uy, vz - uz
     x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    return (ux * vx + uy * vy + uz * vz) / np.sqrt(x * x + y * y + z * z)
+    doubled_area = np.sqrt(x * x + y * y + z * z)
+    at_a, at_b = -(ux * wx + uy * wy + uz * wz), vx * wx + vy * wy + vz * wz
+    return at_a / doubled_area, at_b / doubled_area
 
 
 @compiled(parallel=True)
@@ -140,11 +144,12 @@ def _rates(
             weight[j], faces_at[j] = 0.0, 0
         for at in range(corner_start[vertex], corner_start[vertex + 1]):
             after, before = other_two(faces, corner[at])
+            at_after, at_before = _cotangents(vertices, vertex, after, before)
             slot = slot_of(neighbour, first, last, after) - first
-            weight[slot] += 0.5 * _cotangent(vertices, before, vertex, after)
+            weight[slot] += 0.5 * at_before
             faces_at[slot] += 1
             slot = slot_of(neighbour, first, last, before) - first
-            weight[slot] += 0.5 * _cotangent(vertices, after, before, vertex)
+            weight[slot] += 0.5 * at_after
             faces_at[slot] += 1
         rim = 0
         for j in range(last - first):

@@ -229,7 +229,7 @@ def _mix(
 
     The scale is -1 where every star has closed. For the lean see `PrincipalCurvatures`.
     """
-    vertices, count = energy.shape
+    vertices, count = len(energy), noise.shape[1]
     last = count - 1
     for i in prange(vertices):
         typical, rest = np.empty(count), np.empty(count)

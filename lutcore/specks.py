@@ -25,30 +25,32 @@ def specks(start: IndexArray, neighbour: IndexArray, rim: IndexArray) -> IndexAr
     ndarray of int32
         Each once.
     """
-    done = np.zeros(len(start) - 1, np.bool_)
+    done, large = np.zeros(len(start) - 1, np.bool_), np.zeros(len(start) - 1, np.bool_)
     found = np.empty(len(start) - 1, np.int32)
     count = 0
     for seed in rim:
         if done[seed]:
             continue
-        # Grown in place behind those found; forgotten again if it grows too large.
+        # Grown in place behind those found, until it ends, is too large or meets what is.
         last = count + 1
         found[count] = seed
         done[seed] = True
-        at = count
-        while at < last and last - count < _FEW:
+        at, few = count, True
+        while at < last and few:
             for slot in range(start[found[at]], start[found[at] + 1]):
                 other = neighbour[slot]
-                if not done[other] and last - count < _FEW:
+                few = few and not large[other]
+                if few and not done[other]:
                     done[other] = True
                     found[last] = other
                     last += 1
+                    few = last - count < _FEW
             at += 1
-        if last - count < _FEW:
+        if few:
             count = last
         else:
-            for at in range(count + 1, last):
-                done[found[at]] = False
+            for at in range(count, last):
+                large[found[at]] = True
     return found[:count]
 
 

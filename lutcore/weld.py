@@ -132,21 +132,52 @@ def _merged(mesh: TriangleMesh) -> tuple[Welded, float]:
     if kept == len(used):
         index = np.arange(kept, dtype=np.int32)
         points, faces = mesh.vertices, mesh.faces
+        if not good.all():
+            faces = faces[good]
     else:
-        number = np.where(used, np.cumsum(used, dtype=np.int32) - np.int32(1), np.int32(-1))
-        index = number[same].astype(np.int32)
-        # A vertex without a face does not become part of a surface by lying on it.
-        unreferenced = np.ones(len(used), np.bool_)
-        unreferenced[mesh.faces.ravel()] = False
-        index[unreferenced] = -1
-        points = mesh.vertices[used]
-        faces = index[mesh.faces]
-    if not good.all():
-        faces = faces[good]
+        index, points = np.full(len(used), -1, np.int32), np.empty((kept, 3))
+        faces = np.empty((int(np.count_nonzero(good)), 3), np.int32)
+        _renumber(mesh.vertices, mesh.faces, same, good, used, index, points, faces)
     centred = np.empty_like(points)
     _centre(points, centred)
     ready = TriangleMesh.trusted(centred, faces)
     return Welded(ready, index, kept != len(used)), lowest
+
+
+@compiled()
+def _renumber(
+    vertices: FloatArray,
+    faces: IndexArray,
+    same: IndexArray,
+    good: BoolArray,
+    used: BoolArray,
+    index: IndexArray,
+    points: FloatArray,
+    ready: IndexArray,
+) -> None:
+    """Write the vertices that are used and the good faces, and where vertices went.
+
+    The index is -1 everywhere before; it stays so where no face names the vertex, which does not
+    become part of a surface by lying on it.
+    """
+    number = np.empty(len(used), np.int32)
+    count = 0
+    for vertex in range(len(used)):
+        number[vertex] = -1
+        if used[vertex]:
+            for axis in range(3):
+                points[count, axis] = vertices[vertex, axis]
+            number[vertex] = count
+            count += 1
+    count = 0
+    for face in range(len(faces)):
+        for j in range(3):
+            vertex = faces[face, j]
+            index[vertex] = number[same[vertex]]
+        if good[face]:
+            for j in range(3):
+                ready[count, j] = index[faces[face, j]]
+            count += 1
 
 
 @compiled(parallel=True)

@@ -85,6 +85,21 @@ def test_specks_are_the_small_open_islands_and_nothing_else(dusty):
     np.testing.assert_array_equal(np.sort(specks(*links, rim)), np.arange(first, first + 12))
 
 
+@pytest.mark.parametrize("count", [23, 24, 200])
+def test_the_end_of_a_ribbon_is_no_speck(count):
+    # All of it is rim: whichever end comes last has none but vertices around it that were asked.
+    ends = np.arange(count - 1)
+    low = np.stack([ends, ends + 1, ends + count + 1], axis=1)
+    high = np.stack([ends, ends + count + 1, ends + count], axis=1)
+    along = np.tile(np.arange(count), 2)
+    points = np.stack([along, np.repeat([0, 1], count), 0 * along], axis=1)
+    mesh = TriangleMesh(points, np.vstack([low, high]))
+    links = neighbours(mesh, vertex_corners(mesh))
+    order = np.random.default_rng(0).permutation(2 * count).astype(np.int32)
+    for rim in (np.arange(2 * count, dtype=np.int32), order):
+        assert len(specks(*links, rim)) == (2 * count if 2 * count < 48 else 0)
+
+
 def test_neighbours_are_those_of_the_edges_also_of_large_stars():
     # Hubs below and above the size from which stars are sorted.
     for spokes in (5, 24, 25, 400):
