@@ -123,6 +123,7 @@ def _update(
     normals, tensors, square = inside
     measured, certainty, closed, step = fixed
     now, known = state
+    pull = 1.0 / step
     after = np.empty((len(members), 7))
     counts = np.zeros(len(members), np.int32)
     for m in range(len(members)):
@@ -142,15 +143,17 @@ def _update(
                 continue
             counts[m] += 1
             xx, xy, xz, yy, yz, zz = xx + a, xy + b, xz + c, yy + d, yz + e, zz + f
-        own, pull = certainty[w], counts[m] / step
+        own = certainty[w]
+        share = 1.0 / (own + counts[m] * pull)
         for entry, total in enumerate((xx, xy, xz, yy, yz, zz)):
-            after[m, entry] = (own * measured[w, entry] + total / step) / (own + pull)
+            after[m, entry] = share * (own * measured[w, entry] + pull * total)
         # Neighbours err alike: together they know no more than one of them does.
         after[m, 6] = 1.0 / (own + 1.0 / (squares / max(counts[m], 1) + step))
     for m in range(len(members)):
         w = members[m]
         if counts[m] > 0:
-            now[w] = after[m]
+            for entry in range(7):  # assigned as a row they would take as long as all the rest
+                now[w, entry] = after[m, entry]
         known[w] = known[w] or counts[m] > 0 or not closed[w]
 
 

@@ -243,7 +243,7 @@ def _mix(
         apart = lean[i] / max(energy[i, last], 1e-300)
         costs = np.empty(count)
         biased = np.empty(count)
-        best = np.inf
+        best, dearer = np.inf, 1.0
         lost = 0.0
         for j in range(count):
             # A neighbourhood is as noisy as the band that is finer by one tells.
@@ -272,7 +272,8 @@ def _mix(
             biased[j] = errors[j] - heard
             if stretch[i, j] < _CLOSED or (j > 0 and stretch[i, j + 1] < _CLOSED):
                 errors[j] = steady[j] = np.inf
-            costs[j] = max(steady[j], floor) * _DEARER**j
+            costs[j] = max(steady[j], floor) * dearer
+            dearer *= _DEARER
             best = min(best, costs[j])
         total = square[i] = cost[i] = used[i] = leaning[i] = 0.0
         mixed[i, 0] = mixed[i, 1] = mixed[i, 2] = 0.0
