@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
+from app.endings import unknown_ending
 from app.writing import replacing
 from lutcore.arrays import AnyArray, FloatArray
 from lutcore.color import srgb_bytes
 from lutcore.curvature import PrincipalCurvatures
 from lutcore.diagnostics import vertex_scales
-from lutcore.errors import ParameterError
 from lutcore.mesh import TriangleMesh
 
 DATA_SUFFIXES = (".vtp", ".ply", ".npz", ".csv")
@@ -94,7 +94,7 @@ def save(path: Path, mesh: TriangleMesh, arrays: Arrays) -> None:
     writers = {".vtp": _vtp, ".ply": _ply, ".npz": _npz, ".csv": _csv}
     writer = writers.get(path.suffix.lower())
     if writer is None:
-        raise ParameterError.unknown("output format", path.suffix or path.name, DATA_SUFFIXES)
+        raise unknown_ending(path, DATA_SUFFIXES)
     with replacing(path) as beside:
         writer(beside, mesh, arrays)
 

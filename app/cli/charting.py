@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from app.chart.points import Chart
 from app.cli.console import note, table
+from app.endings import check_ending
 from app.writing import check_writable, write_bytes
 from lutcore.errors import ParameterError
 from lutcore.parameters import Choice, Number, Parameters, declared
@@ -96,8 +97,7 @@ def require(output: Path, mesh: str | None) -> None:
     """
     from app.chart.writing import SUFFIXES
 
-    if output.suffix.lower() not in SUFFIXES:
-        raise ParameterError.unknown("output format", output.suffix or output.name, SUFFIXES)
+    check_ending(output, SUFFIXES)
     source = Path(mesh or "")
     if source.is_file() and output.exists() and output.samefile(source):
         raise ParameterError(f"{output} is the mesh itself; choose another name")

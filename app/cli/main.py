@@ -9,6 +9,7 @@ from importlib import import_module
 from types import ModuleType
 
 from app.cli.console import clear_line, note
+from app.cli.parser import Parser
 from lutcore.compiling import when_compiling
 from lutcore.errors import CancelledError, CurvelightError, MeshError, ParameterError
 
@@ -123,7 +124,7 @@ def _run(words: list[str]) -> int:
         _overview().parse_args(words or ["--help"])
         return OK
     module = import_module(f"app.cli.{name}")
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         f"curvelight {name}",
         description=module.__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,

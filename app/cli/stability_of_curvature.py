@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.console import answer, progress, table
+from app.endings import check_ending
 from lutcore.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -63,9 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not 0.0 < arguments.limit < math.inf:
         raise ParameterError(f"--limit = {arguments.limit:g} is not a time; give seconds above 0")
     output: Path = arguments.output
-    if output.suffix.lower() not in stability_files.SUFFIXES:
-        name = output.suffix or output.name
-        raise ParameterError.unknown("output format", name, stability_files.SUFFIXES)
+    check_ending(output, stability_files.SUFFIXES)
     methods = _chosen("curvature estimator", arguments.methods, estimators())
     names = _chosen("case", arguments.cases, catalogue.names())
     check_writable(output)

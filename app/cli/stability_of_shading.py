@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.console import answer, progress, table
+from app.endings import check_ending
 from lutcore.errors import ParameterError
 from lutcore.parameters import Number
 
@@ -56,8 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     from app.writing import check_writable
 
     output: Path = arguments.output
-    if output.suffix.lower() not in files.SUFFIXES:
-        raise ParameterError.unknown("output format", output.suffix or output.name, files.SUFFIXES)
+    check_ending(output, files.SUFFIXES)
     names = _chosen(arguments.models)
     given = TOLERANCE if arguments.tolerance is None else arguments.tolerance
     tolerance = float(_TOLERANCE.check("tolerance", given))

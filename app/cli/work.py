@@ -10,6 +10,7 @@ from app import session as state
 from app.cli.console import answer, note, progress
 from app.cli.remarks import remarks
 from app.contestants import alone
+from app.endings import check_ending
 from app.pipeline import Pipeline
 from app.session import Camera, Session
 from app.writing import check_writable
@@ -63,14 +64,7 @@ class Run:
         WriteError
             If it cannot be written there.
         """
-        if self.output.suffix.lower() == ".pdf" and ".html" in suffixes:
-            raise ParameterError(
-                f"{self.output}: PDF is not written; write -o {self.output.with_suffix('.html')} "
-                "and print that from a browser, it is laid out for A4"
-            )
-        if self.output.suffix.lower() not in suffixes:
-            name = self.output.suffix or self.output.name
-            raise ParameterError.unknown("output format", name, suffixes)
+        check_ending(self.output, suffixes)
         self._refuse_overwriting()
         check_writable(self.output)
         if vars(self.arguments).get("reference"):

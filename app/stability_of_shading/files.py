@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from app.endings import unknown_ending
 from app.stability_of_shading.report import Outcome, Report, cells
 from app.writing import write_bytes
-from lutcore.errors import ParameterError
 from lutcore.stability_of_shading.maps import BETAS, CURVATURES, REASONS
 
 SUFFIXES = (".png", ".csv", ".json", ".html")
@@ -90,7 +90,7 @@ def save(path: Path, report: Report) -> None:
 
         content = page(report).encode()
     else:
-        raise ParameterError.unknown("output format", path.suffix or path.name, SUFFIXES)
+        raise unknown_ending(path, SUFFIXES)
     write_bytes(path, content)
 
 

@@ -83,7 +83,7 @@ def test_where_noise_drowns_all_nothing_is_recommended(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (["--curvature", "-o", "a.pdf"], 2, "unknown output format '.pdf'"),
+        (["--curvature", "-o", "a.pdf"], 2, "PDF is not written; write -o a.html"),
         (["--curvature", "-o", "none/a.png"], 1, "make the folder first"),
         (["--curvature", "-o", "a.png", "--methods", "vtl"], 2, "did you mean 'vtk'"),
         (["--curvature", "-o", "a.png", "--surface", "tours"], 2, "did you mean 'torus'"),

@@ -73,7 +73,7 @@ def test_the_table_names_regions_and_failed_checks(tmp_path, capsys):
     [
         (["-o", "a.png"], "--curvature or --shading"),
         (["--shading", "--curvature", "-o", "a.png"], "--curvature or --shading"),
-        (["--shading", "-o", "a.pdf"], "unknown output format '.pdf'"),
+        (["--shading", "-o", "a.pdf"], "PDF is not written; write -o a.html"),
         (["--shading", "-o", "a.png", "--models", "gather"], "unknown local shading model"),
         (["--shading", "-o", "a.png", "--eta", "9"], "eta"),
         (["--shading", "-o", "a.png", "--profile", "jensen"], "jensen2001"),
