@@ -152,7 +152,7 @@ def _update(
     for m in range(len(members)):
         w = members[m]
         if counts[m] > 0:
-            for entry in range(7):  # assigned as a row they would take as long as all the rest
+            for entry in range(7):  # a row's assignment would be slower
                 now[w, entry] = after[m, entry]
         known[w] = known[w] or counts[m] > 0 or not closed[w]
 
