@@ -119,7 +119,8 @@ def _fit(
                     x, y, z = x + d * u[axis], y + d * v[axis], z + d * n[axis]
                 x, y, z = x / narrow, y / narrow, z / narrow
                 if x * x + y * y + z * z <= 1.0:  # those of the smaller ball first
-                    local[all_of] = local[near]
+                    for axis in range(3):
+                        local[all_of, axis] = local[near, axis]
                     local[near, 0], local[near, 1], local[near, 2] = x, y, z
                     near += 1
                 else:
@@ -130,11 +131,9 @@ def _fit(
             if not (fitted and judged) or near <= TERMS[_CUBIC]:
                 continue
             m, tensor = operator_of(jet, n, u, v, narrow)
-            space = np.array(in_space(np.array(m), np.array(tensor)))
-            found = in_tangent_plane(normals[i], space)
+            found = in_tangent_plane(normals[i], in_space(m, tensor))
             other, second = operator_of(wider, n, u, v, narrow)
-            space = np.array(in_space(np.array(other), np.array(second)))
-            after = in_tangent_plane(normals[i], space)
+            after = in_tangent_plane(normals[i], in_space(other, second))
             xx, xy, yy = found[0] - after[0], found[1] - after[1], found[2] - after[2]
             bias = (0.5 * (xx * xx + yy * yy) + xy * xy) / growth**2
             error = (noise / narrow) ** 2 + bias

@@ -136,13 +136,13 @@ def write_principal(
 
 @compiled()
 def in_space(
-    normal: FloatArray, tensor: FloatArray | Vector
+    normal: FloatArray | Vector, tensor: FloatArray | Vector
 ) -> tuple[float, float, float, float, float, float]:
     """Return a tangent tensor as one of space, which can be added to those of other planes.
 
     Parameters
     ----------
-    normal : ndarray, shape=(3,)
+    normal : ndarray, shape=(3,), or tuple of 3 floats
         Unit normal.
     tensor : ndarray, shape=(3,), or tuple of 3 floats
         Entries xx, xy, yy in its `tangent_frame`.

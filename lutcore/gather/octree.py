@@ -240,9 +240,9 @@ def _moments_below(
                 top -= number
             _join(middle[top : top + number], waiting[top : top + number], centre, whole)
             _write(centre, whole, ball[node], terms[node])
-            middle[top], waiting[top] = centre, whole
+            _copy(centre, whole, middle[top], waiting[top])
             top += 1
-        centres[which], found[which] = centre, whole
+        _copy(centre, whole, centres[which], found[which])
     return centres, found
 
 
@@ -262,16 +262,25 @@ def _moments_above(
     top, which, node = 0, len(subtrees) - 1, len(skip) - 1
     while node >= 0:
         if which >= 0 and node == skip[subtrees[which]] - 1:
-            middle[top], waiting[top] = centres[which], found[which]
+            _copy(centres[which], found[which], middle[top], waiting[top])
             node, which = subtrees[which] - 1, which - 1
         else:
             number = _children(node, skip)
             top -= number
             _join(middle[top : top + number], waiting[top : top + number], centre, whole)
             _write(centre, whole, ball[node], terms[node])
-            middle[top], waiting[top] = centre, whole
+            _copy(centre, whole, middle[top], waiting[top])
             node -= 1
         top += 1
+
+
+@compiled()
+def _copy(centre: FloatArray, whole: FloatArray, to: FloatArray, terms: FloatArray) -> None:
+    """Write moments to another place; numba takes seconds to compile a slice's assignment."""
+    for axis in range(3):
+        to[axis] = centre[axis]
+        for entry in range(10):
+            terms[axis, entry] = whole[axis, entry]
 
 
 @compiled()
@@ -286,7 +295,8 @@ def _children(node: int, skip: IndexArray) -> int:
 def _write(
     centre: FloatArray, whole: FloatArray, ball: FloatArray, terms: NDArray[np.float32]
 ) -> None:
-    ball[:3] = centre
+    for axis in range(3):
+        ball[axis] = centre[axis]
     for entry in range(10):
         for channel in range(3):
             terms[entry, channel] = whole[channel, entry]
@@ -301,7 +311,10 @@ def _join(
 ) -> None:
     """Write the common centre of power of several parts, and their moments about it."""
     power = 0.0
-    centre[:], whole[:] = 0.0, 0.0
+    for c in range(3):
+        centre[c] = 0.0
+        for entry in range(10):
+            whole[c, entry] = 0.0
     for part in range(len(centres)):
         for c in range(3):
             power += terms[part, c, 0]
@@ -311,7 +324,9 @@ def _join(
         if power > 0.0:
             centre[axis] /= power
         else:  # triangles without an area
-            centre[axis] = centres[:, axis].mean()
+            centre[axis] = 0.0
+            for part in range(len(centres)):
+                centre[axis] += centres[part, axis] / len(centres)
     for part in range(len(centres)):
         x = centres[part, 0] - centre[0]
         y = centres[part, 1] - centre[1]

@@ -176,11 +176,19 @@ def _lift(part: FloatArray, added: FloatArray) -> bool:
 @compiled()
 def _whole(face: int, faces: IndexArray, light: FloatArray, part: FloatArray) -> None:
     """Write u, v and the light of a face's corners."""
-    part[:, :2] = 0.0
-    part[1, 0] = part[2, 1] = 1.0
     for j in range(3):
+        part[j, 0] = part[j, 1] = 0.0
         for channel in range(3):
             part[j, 2 + channel] = light[faces[face, j], channel]
+    part[1, 0] = part[2, 1] = 1.0
+
+
+@compiled()
+def _copy(part: FloatArray, to: FloatArray) -> None:
+    """Write a part to another place; numba takes seconds to compile a slice's assignment."""
+    for j in range(3):
+        for entry in range(5):
+            to[j, entry] = part[j, entry]
 
 
 @compiled()
@@ -208,14 +216,15 @@ def _cut(
     allowed = _allowed(on, face, rule)
     while top > 0:
         top -= 1
-        part[:], deep = waiting[top], depth[top]
+        deep = depth[top]
+        _copy(waiting[top], part)
         told = seen < known
         bends = told and bool((cuts >> np.uint64(seen)) & _ONE)
         if bends or not told or deep > 0:
             _middles(on, face, part, middle)
             _missing(part, middle, more)
         else:
-            more[:] = added
+            more[0], more[1], more[2] = added[0], added[1], added[2]
         if not told and deep < _DEEPEST:
             bends = _bends(part, middle, rule.limit, allowed * 4.0**deep)
             if bends and seen < _BITS:
@@ -223,20 +232,23 @@ def _cut(
         seen += 1
         if bends:
             for which in range(3):
-                waiting[top, 0] = part[which]
-                waiting[top, 1] = middle[which]
-                waiting[top, 2] = middle[(which + 2) % 3]
+                for entry in range(5):
+                    waiting[top, 0, entry] = part[which, entry]
+                    waiting[top, 1, entry] = middle[which, entry]
+                    waiting[top, 2, entry] = middle[(which + 2) % 3, entry]
                 depth[top] = deep + 1
                 top += 1
-            waiting[top], depth[top] = middle, deep + 1
+            _copy(middle, waiting[top])
+            depth[top] = deep + 1
             top += 1
             continue
         if deep == 0 and not told:
-            added[:] = more
+            added[0], added[1], added[2] = more[0], more[1], more[2]
         if _lift(part, more):
             if len(corners) > 0:
-                light[count] = part[:, 2:]
                 for j in range(3):
+                    for c in range(3):
+                        light[count, j, c] = part[j, 2 + c]
                     x, y, z = position(on, face, part[j, 0], part[j, 1])
                     corners[count, j, 0] = mm_per_unit * x
                     corners[count, j, 1] = mm_per_unit * y

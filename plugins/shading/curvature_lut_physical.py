@@ -125,17 +125,24 @@ def _curved(y: float) -> tuple[float, float]:
 
 
 @compiled()
-def _bent(mean: FloatArray, inverse: FloatArray, beta: float) -> tuple[FloatArray, FloatArray]:
-    # T, and the powers of x in 1/rho summed, at mean curvatures in 1/l_u.
-    x, wide = np.empty(len(mean)), np.empty(len(mean))
-    for k in range(len(mean)):
-        x[k], wide[k] = _curved(beta / (mean[k] + 1e-300))
-    lost = np.zeros((_COSINES, len(mean)))
+def _bent(
+    trace: FloatArray,
+    length: float,
+    inverse: FloatArray,
+    beta: float,
+    wide: FloatArray,
+    lost: FloatArray,
+) -> None:
+    # Writes T, and the powers of x in 1/rho summed, at mean curvatures in 1/l_u.
+    x = np.empty(len(trace))
+    for k in range(len(trace)):
+        x[k], wide[k] = _curved(beta / (0.5 * length * trace[k] + 1e-300))
     for m in range(_COSINES):
+        for k in range(len(trace)):
+            lost[m, k] = 0.0
         for power in range(_BENDS - 1, -1, -1):
-            for k in range(len(mean)):
+            for k in range(len(trace)):
                 lost[m, k] = lost[m, k] * x[k] + inverse[m, power]
-    return wide, lost
 
 
 @compiled(parallel=True)
@@ -160,11 +167,12 @@ def _exitance(
         count = min(BLOCK, len(points) - first)
         cosine, kappa, strength = np.empty(count), np.empty(count), np.empty(count)
         bulge, trace, squares = np.empty(count), np.empty(count), np.empty(count)
+        bend = np.empty(count)
         for k in range(count):
             trace[k], squares[k] = invariants(shape, first + k)
         wide, lost = np.empty((3, count)), np.empty((3, _COSINES, count))
         for c in range(3):
-            wide[c], lost[c] = _bent(0.5 * length[c] * trace, inverse[c], beta[c])
+            _bent(trace, length[c], inverse[c], beta[c], wide[c], lost[c])
         for light in range(len(lights)):
             for k in range(count):
                 i = first + k
@@ -181,7 +189,8 @@ def _exitance(
                 factor = entry_factors(
                     entry, bulge, trace, squares, lost[c], beta[c], eta[c], length[c]
                 )
-                bend = np.sqrt(wide[c]) * kappa
+                for k in range(count):
+                    bend[k] = np.sqrt(wide[c, k]) * kappa[k]
                 glow = even_forms(weights[c], corners[c], entry, bend, length[c], rows, steps, c)
                 for k in range(count):
                     rgb = lights[light, 8 + c] * strength[k]
