@@ -110,17 +110,13 @@ def rungs(
     part, inner = patches(on)
     if not inner.any():  # nothing but specks
         return every
-    # Each rung takes sqrt(2) times the products of the one before: the last is tried where needed.
-    for tried in sorted({max(3, count - 1), count}):
-        smoothed = smooth(part, every[:tried].tolist(), tried // 2, progress)
-        used = scales_chosen(part, smoothed, precision, steadiness)
-        low, high = np.percentile(used[inner], _LEFT_OUT)
-        # A scale is judged by the change to the next, so that one has to be there too.
-        place = 2.0 * np.log2(np.maximum([low, high], every[0]) / every[0])
-        first = int(place[0] + _NEAR) - 1
-        last = max(3, min(count, int(np.ceil(place[1] - _NEAR)) + 2))
-        if last < tried:
-            break
+    smoothed = smooth(part, every.tolist(), count // 2, progress)
+    used = scales_chosen(part, smoothed, precision, steadiness)
+    low, high = np.percentile(used[inner], _LEFT_OUT)
+    # A scale is judged by the change to the next, so that one has to be there too.
+    place = 2.0 * np.log2(np.maximum([low, high], every[0]) / every[0])
+    first = int(place[0] + _NEAR) - 1
+    last = max(3, min(count, int(np.ceil(place[1] - _NEAR)) + 2))
     return every[max(0, min(first, last - 3)) : last]
 
 
