@@ -5,13 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.costs import measured
+from app.lighting import world_lights
 from app.pipeline import Pipeline
 from app.session import Session
 from lutcore.arrays import FloatArray
 from lutcore.choice import Choice, choose
 from lutcore.shading import ShadingInputs
 from lutcore.tolerance import Tolerance
-from lutcore.visibility import ShadowForecast, forecast
+from lutcore.visibility import ShadowForecast
 
 
 @dataclass(frozen=True)
@@ -87,10 +88,8 @@ def needs(
     costs = measured(pipeline.progress, again)
     inputs = pipeline.shadowed(session, axes)
     choice = choose(inputs, tolerance, costs, checked=checked)
-    mesh = pipeline.subject(session).mesh
-    shadows = None
-    if len(inputs.lights):
-        shadows = forecast(mesh, inputs.normals, inputs.lights)
+    lights = world_lights(session, axes)
+    shadows = pipeline.forecast(session, lights) if lights else None
     return Needs(
         choice=choice,
         shadows=shadows,

@@ -306,9 +306,9 @@ class _Studio:
         for one, label in zip(studios, labels(self.session), strict=True):
             one.exposure = self.exposure
             model = one.session.model
-            if model.name == AUTO and self.session.compared_by == "model":
-                label = one._named(model)  # noqa: PLW2901  what it came to, too
-            singles.append(Single(one._lit(model, label), everywhere))
+            left_open = model.name == AUTO and self.session.compared_by == "model"
+            caption = one._named(model) if left_open else label
+            singles.append(Single(one._lit(model, caption), everywhere))
         return singles
 
     def _curved(self) -> list[Single]:

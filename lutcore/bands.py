@@ -95,7 +95,7 @@ def bands(on: Surface, smoothed: Smoothed) -> Bands:
     table = np.empty((groups, len(on.areas), _TOGETHER), np.float32)
     _energies(smoothed.tensors, on.areas / on.spacing**2, middle, table)
     spare = np.empty_like(table)
-    links = (start.view(np.uint32), neighbour.view(np.uint32))
+    links = on.operator.links
     for _ in range(_PASSES):
         for group in range(groups):
             _average(*links, table[group], spare[group])

@@ -12,7 +12,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from lutcore.arrays import FloatArray, IndexArray, SingleArray
+from lutcore.arrays import FloatArray, SingleArray
 from lutcore.compiled import compiled
 from lutcore.geometry import median_vertex_area, vertex_corners
 from lutcore.laplacian import Laplacian, laplacian
@@ -127,7 +127,7 @@ def smooth(
     change = low_pass(on.operator, on.fields, scales, part(progress, 0.0, 0.7))
     tell(progress, 0.7, "fitting shape operators")
     normals, tensors, stretch = shape_operators(
-        on.operator.start, on.operator.neighbour, on.fields, change, base, on.spacing
+        *on.operator.links, on.fields, change, base, on.spacing
     )
     return Smoothed((0.0, *scales), normals, tensors, stretch)
 
@@ -173,8 +173,8 @@ def _write_normals(fields: FloatArray, change: SingleArray, base: int, normals: 
 
 
 def shape_operators(
-    start: IndexArray,
-    neighbour: IndexArray,
+    start: NDArray[np.uint32],
+    neighbour: NDArray[np.uint32],
     fields: FloatArray,
     change: SingleArray,
     base: int,
@@ -185,8 +185,8 @@ def shape_operators(
 
     Parameters
     ----------
-    start, neighbour : ndarray of int32
-        Neighbours of each vertex.
+    start, neighbour : ndarray of uint32
+        `Laplacian.links`.
     fields : ndarray, shape=(n, 6)
         `Surface.fields`.
     change : ndarray of float32, shape=(S, n, 6)
@@ -213,9 +213,10 @@ def shape_operators(
     return normals, tensors, stretch
 
 
+@compiled(parallel=True, packed=True)
 def fit_shape_operators(
-    start: IndexArray,
-    neighbour: IndexArray,
+    start: NDArray[np.uint32],
+    neighbour: NDArray[np.uint32],
     fields: FloatArray,
     change: SingleArray,
     base: int,
@@ -226,29 +227,12 @@ def fit_shape_operators(
     stretch: SingleArray,
 ) -> None:
     """Do what `shape_operators` does, into arrays that are there."""
-    # Unsigned: compiled loops need not ask whether an index counts from the end.
-    links = start.view(np.uint32), neighbour.view(np.uint32)
-    widest = int(np.diff(start).max())
-    _fit(*links, widest, fields, change, base, spacing, first, normals, tensors, stretch)
-
-
-@compiled(parallel=True, packed=True)
-def _fit(
-    start: NDArray[np.uint32],
-    neighbour: NDArray[np.uint32],
-    widest: int,
-    fields: FloatArray,
-    change: SingleArray,
-    base: int,
-    spacing: float,
-    first: int,
-    normals: FloatArray,
-    tensors: SingleArray,
-    stretch: SingleArray,
-) -> None:
     count, scales = change.shape[1], change.shape[0]
     unit = spacing * spacing
     point, near = _POINT * _POINT * unit, _NEAR * unit
+    widest = 0
+    for i in range(count):
+        widest = max(widest, int(np.int64(start[i + 1]) - np.int64(start[i])))
     for i in prange(count):
         n = _normal(fields, change, base, i)
         normals[i, 0], normals[i, 1], normals[i, 2] = n

@@ -198,7 +198,7 @@ class _Room:
 def _geometry(on: Surface, change: SingleArray, normals: FloatArray, room: _Room) -> None:
     """Write the normals after the first change, and the shape operators after the second."""
     links = (on.operator.start, on.operator.neighbour)
-    given = (*links, on.fields, change, 0, on.spacing, 2)
+    given = (*on.operator.links, on.fields, change, 0, on.spacing, 2)
     fit_shape_operators(*given, normals, room.fitted, room.stretch)
     room.tensors[:] = room.fitted[:, 0]
     # Half a star, or one that has closed, tells less than its neighbours.

@@ -47,6 +47,11 @@ class Laplacian(NamedTuple):
     rim: BoolArray
     parts: IndexArray
 
+    @property
+    def links(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """`start` and `neighbour` unsigned: loops need not ask whether one counts from the end."""
+        return self.start.view(np.uint32), self.neighbour.view(np.uint32)
+
 
 def laplacian(
     mesh: TriangleMesh, corners: Corners, areas: FloatArray, typical_area: float

@@ -87,8 +87,7 @@ def filtered(
     weights = np.zeros((terms + terms % 2, len(series)), np.float32)
     for column, one in enumerate(series):
         weights[: len(one), column] = one
-    # Unsigned: compiled loops need not ask whether an index counts from the end.
-    links = (operator.start.view(np.uint32), operator.neighbour.view(np.uint32), operator.rate)
+    links = (*operator.links, operator.rate)
     before = np.empty((len(fields), FIELDS), np.float32)
     apply(*links, fields, 0.5, before)
     change = np.empty((len(series), len(before), FIELDS), np.float32)

@@ -190,3 +190,23 @@ class Measurements(Details):
             For `once`.
         """
         return self.subject(session).key, key_of((session.estimator, self.scale(session)))
+
+    def surface_key(self, session: Session) -> tuple[Hashable, ...]:
+        """Return all that a surface depends on as it is shaded.
+
+        Parameters
+        ----------
+        session : Session
+            Everything but its model, lights and shadows is used.
+
+        Returns
+        -------
+        tuple
+            For `once`.
+        """
+        return (
+            *self.curvature_key(session),
+            # A scale that is given is one for all channels, one that is found is not.
+            session.scale is None,
+            key_of((session.material, session.profile, self.mm_per_unit(session))),
+        )

@@ -98,23 +98,3 @@ class Scenes(Visibility):
 
         lights = pack(world_lights(session, axes)).tobytes()
         return *self.surface_key(session), key_of(model), lights
-
-    def surface_key(self, session: Session) -> tuple[Hashable, ...]:
-        """Return all that a surface depends on as it is shaded.
-
-        Parameters
-        ----------
-        session : Session
-            Everything but its model, lights and shadows is used.
-
-        Returns
-        -------
-        tuple
-            For `once`.
-        """
-        return (
-            *self.curvature_key(session),
-            # A scale that is given is one for all channels, one that is found is not.
-            session.scale is None,
-            key_of((session.material, session.profile, self.mm_per_unit(session))),
-        )

@@ -9,6 +9,7 @@ from lutcore.arrays import FloatArray
 
 if TYPE_CHECKING:
     from lutcore.lights import Light
+    from lutcore.visibility import ShadowForecast
 
 
 class Visibility(Measurements):
@@ -31,11 +32,31 @@ class Visibility(Measurements):
         """
         if session.casts != "auto" or not lights:
             return session.casts == "on" and bool(lights)
+        return self.forecast(session, lights).needed
+
+    def forecast(self, session: Session, lights: "Sequence[Light]") -> "ShadowForecast":
+        """Return what cast shadows would change, by which `auto` casts them.
+
+        Parameters
+        ----------
+        session : Session
+            Its mesh and what it is shaded by are used.
+        lights : sequence of DirectionalLight, PointLight or ConeLight
+            The lights, in world axes; one or more.
+
+        Returns
+        -------
+        ShadowForecast
+            The same for all models.
+        """
         from lutcore.lights import pack
         from lutcore.visibility import forecast
 
-        mesh, packed = self.subject(session).mesh, pack(lights)
-        return forecast(mesh, self.facing(session), packed).needed
+        packed = pack(lights)
+        return self.once(
+            ("forecast", *self.surface_key(session), packed.tobytes()),
+            lambda: forecast(self.subject(session).mesh, self.facing(session), packed),
+        )
 
     def visibility(
         self, session: Session, local: bool, lights: "Sequence[Light]"

@@ -3,6 +3,7 @@ import pytest
 from msgspec.structs import replace
 
 from app.contestants import alone
+from app.lighting import world_lights
 from app.pipeline import Pipeline
 from app.session import CHOSEN, Directional, Method, Session
 from lutcore.shading import AUTO
@@ -58,3 +59,20 @@ def test_they_are_left_to_the_scene_where_the_model_is():
 
 def test_the_name_is_that_of_the_model():
     assert CHOSEN == AUTO
+
+
+def test_what_shadows_change_is_looked_for_once_in_a_scene(monkeypatch):
+    from lutcore import visibility
+
+    asked = []
+    real = visibility.forecast
+    monkeypatch.setattr(visibility, "forecast", lambda *given: asked.append(given) or real(*given))
+    pipeline, session = Pipeline(), replace(TORUS, shadows="auto")
+    for model in (LOCAL, Method("wrap")):
+        pipeline.exitance(session, model, AXES)
+    lights = world_lights(session, AXES)
+    assert pipeline.casting(session, lights) and len(asked) == 1
+    # It depends on the lights, and on what the normals do.
+    assert pipeline.casting(session, lights[:1])
+    pipeline.casting(replace(session, mm_per_unit=2.0), lights)
+    assert len(asked) == 3

@@ -223,7 +223,7 @@ def test_rates_are_relative_to_the_largest_row():
 def test_what_is_left_out_changes_nothing_of_the_rest():
     on = surface(analytic.torus(2_000).noisy(0.02))
     change = low_pass(on.operator, on.fields, [2.0 * on.spacing, 4.0 * on.spacing])
-    given = on.operator.start, on.operator.neighbour, on.fields, change, 1, on.spacing
+    given = *on.operator.links, on.fields, change, 1, on.spacing
     normals, tensors, stretch = shape_operators(*given)
     np.testing.assert_array_equal(smoothed_normals(on.fields, change, 1), normals)
     for first in (1, 2):
